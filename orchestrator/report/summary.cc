@@ -91,9 +91,13 @@ std::string FidelityText(const Experiment& experiment, const Figures& figures) {
     text += "fidelity       not measured, the law failed on " + IdealBodies(experiment) + ": " + failure + "\n";
   const auto rms_m = figures.Number("fidelity.rms_m");
   const double travelled_m = figures.Known("fidelity.travelled_m");
-  if (rms_m && travelled_m > 0)
+  constexpr double kSome_m = 0.05;  // less would be written as "0.0 m", and nothing is a share of that
+  if (rms_m && travelled_m >= kSome_m)
     text += Line("fidelity       {:.4f} m rms from {}: {:.2f} % of {:.1f} m travelled", *rms_m, IdealBodies(experiment),
                  100 * *rms_m / travelled_m, travelled_m);
+  else if (rms_m)
+    text += Line("fidelity       {:.2g} m rms from {}, while agents travelled {:.2g} m", *rms_m, IdealBodies(experiment),
+                 travelled_m);
   return text;
 }
 

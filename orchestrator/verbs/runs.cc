@@ -11,6 +11,7 @@
 
 #include "orchestrator/recording/run_list.h"
 #include "orchestrator/report/json.h"
+#include "orchestrator/verbs/size_text.h"
 #include "orchestrator/verbs/verb.h"
 
 namespace mascot {
@@ -22,17 +23,6 @@ struct RunsArgs {
   std::optional<std::string> note;
   bool json = false;
 };
-
-/// "507 MB"; powers of ten, as file managers and disks have them.
-std::string SizeText(std::uint64_t bytes) {
-  double size = static_cast<double>(bytes);
-  for (const char* unit : {"B", "kB", "MB"}) {
-    const int digits = size < 9.95 && bytes >= 1000 ? 1 : 0;
-    if (size < 999.5) return fmt::format("{:.{}f} {}", size, digits, unit);
-    size /= 1000;
-  }
-  return fmt::format("{:.1f} GB", size);
-}
 
 std::string TimeText(std::chrono::system_clock::time_point time) {
   return fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::localtime(std::chrono::system_clock::to_time_t(time)));

@@ -265,6 +265,33 @@ TEST(Check, SaysWhenAgentsShouldShareProcesses) {
               testing::Not(testing::HasSubstr("processes")));
 }
 
+TEST(Summary, OfAFlightOfOneTickHasNoShareOfNothing) {
+  const ScratchFolder folder;
+  const Ran run =
+      Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator up " + Config("leaderless") +
+            " --engine inprocess --duration-s 0.01 --set output.save_plot=false --out " + folder.File("run"));
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_THAT(run.output, testing::ContainsRegex("fidelity       [0-9.e-]+ m rms from ideal double integrators, while "
+                                                 "agents travelled [0-9.e-]+ m\n"));
+}
+
+TEST(Check, SaysAboutHowLargeTheFilesWillBe) {
+  const ScratchFolder folder;
+  for (const std::string config : {"leaderless", "coverage", "flocking"}) {
+    const Ran checked = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check --json " + Config(config));
+    const double said = nlohmann::json::parse(checked.output)["files_bytes"];
+    const Ran run = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator up " + Config(config) +
+                          " --engine inprocess --quiet --set output.save_plot=false --out " + folder.File(config));
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+    const auto size = [&](const char* name) {
+      return static_cast<double>(std::filesystem::file_size(folder.File(config + "/" + name)));
+    };
+    const double share = said / (size("run.mcap") + size("states.npz"));
+    EXPECT_GT(share, 0.7) << config;
+    EXPECT_LT(share, 1.4) << config;
+  }
+}
+
 TEST(Check, WarnsWhenTheFirstCommandWouldSaturate) {
   const Ran run =
       Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") + " --set law.p_gain=1.0");

@@ -81,11 +81,32 @@ TEST_F(Verbs, CheckSaysWhatTheExperimentIsAndWhatTheoryExpects) {
   EXPECT_THAT(text, AllOf(HasSubstr(path() + ": valid\n"), HasSubstr("  experiment     four agents\n"),
                           HasSubstr("  agents         4 quadrotor\n"),
                           HasSubstr("  law            consensus, no leader, axes xy\n"),
-                          HasSubstr("  duration       40 s, 4000 ticks at 100 Hz\n")));
+                          HasSubstr("  duration       40 s, 4000 ticks at 100 Hz\n"),
+                          HasSubstr("  starts         x -1.0 to 1.0 m, y -1.0 to 1.0 m, z 1.0 to 4.0 m\n"),
+                          HasSubstr("  files          about 5.9 MB: recording 3.2 MB, states.npz 2.7 MB\n")));
   EXPECT_THAT(text, AllOf(HasSubstr("  graph          6 edges, symmetric\n"), HasSubstr("  lambda_2       0.585786\n"),
                           HasSubstr("  components     1 strongly connected\n"), HasSubstr("  roots          1-4\n"),
                           HasSubstr("  stable         yes\n"), HasSubstr("  first command  2 m/s^2 of 3 allowed\n"),
                           HasSubstr("  settles in     ")));
+}
+
+TEST_F(Verbs, CheckSaysWhatKeepsFilesSmall) {
+  const auto files = [&](const std::vector<std::string>& sets) {
+    std::vector<std::string> words{path()};
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    const std::string text = Printed(SetUpCheck, words);
+    const std::size_t at = text.find("  files ");
+    return text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_EQ(files({"output.save_data=false"}), "  files          about 3.2 MB");
+  EXPECT_EQ(files({"record.topics=[]"}), "  files          about 2.7 MB");
+  EXPECT_EQ(files({"record.topics=[]", "output.save_data=false"}),
+            "  files          none of the states (output.save_data, record.topics)");
+  EXPECT_EQ(files({"agents.model=single_integrator", "output.save_data=false"}), "  files          about 1.6 MB");
+  EXPECT_EQ(
+      files({"run.duration_s=4000"}),
+      "  files          about 589 MB: recording 320 MB, states.npz 269 MB; output.save_data = false leaves out the "
+      "latter, which `export` makes of the recording");
 }
 
 TEST_F(Verbs, CheckTakesTheOptionsOfARun) {
