@@ -6,7 +6,10 @@ add_custom_target(man_pages
   COMMAND ${PROJECT_SOURCE_DIR}/scripts/man_pages ${PROJECT_BINARY_DIR} ${man_pages}
   DEPENDS orchestrator agent physics_server
   COMMENT "Making manual pages")
-install(DIRECTORY ${man_pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
+foreach(section 1 5)
+  install(DIRECTORY ${man_pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section} OPTIONAL
+    FILES_MATCHING PATTERN "*.${section}.gz")
+endforeach()
 
 install(FILES scripts/completion/orchestrator.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME orchestrator)

@@ -272,7 +272,16 @@ class ManualPages(unittest.TestCase):
     def test_there_is_one_of_each_verb_and_program(self):
         pages = {path.name for path in (BUILD / "man").iterdir()}
         self.assertEqual(pages, {f"{name}.1.gz" for name in ["orchestrator", "agent", "physics_server",
-                                                              *(f"orchestrator-{verb}" for verb in HELPS.verbs)]})
+                                                              *(f"orchestrator-{verb}" for verb in HELPS.verbs)]} |
+                         {"mascot.toml.5.gz"})
+
+    def test_that_of_experiment_files_has_every_key(self):
+        text = gzip.decompress((BUILD / "man/mascot.toml.5.gz").read_bytes()).decode().replace("\\-", "-")
+        self.assertIn(".SH NAME\nmascot.toml - an experiment of decentralised control\n", text)
+        keys = subprocess.run([PROGRAM, "keys", "--names"], check=True, capture_output=True, text=True).stdout.split()
+        self.assertGreater(len(keys), 200)
+        for key in keys:
+            self.assertIn(f"\n.B {key}\n", text)
 
     def test_they_tell_what_whatis_looks_for_and_all_options(self):
         for verb, summary in HELPS.verbs.items():
