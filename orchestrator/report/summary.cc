@@ -96,8 +96,8 @@ std::string FidelityText(const Experiment& experiment, const Figures& figures) {
     text += Line("fidelity       {:.4f} m rms from {}: {:.2f} % of {:.1f} m travelled", *rms_m, IdealBodies(experiment),
                  100 * *rms_m / travelled_m, travelled_m);
   else if (rms_m)
-    text += Line("fidelity       {:.2g} m rms from {}, while agents travelled {:.2g} m", *rms_m, IdealBodies(experiment),
-                 travelled_m);
+    text += Line("fidelity       {:.2g} m rms from {}, while agents travelled {:.2g} m", *rms_m,
+                 IdealBodies(experiment), travelled_m);
   return text;
 }
 
