@@ -278,7 +278,7 @@ class ManualPages(unittest.TestCase):
     def test_that_of_experiment_files_has_every_key(self):
         text = gzip.decompress((BUILD / "man/mascot.toml.5.gz").read_bytes()).decode().replace("\\-", "-")
         self.assertIn(".SH NAME\nmascot.toml - an experiment of decentralised control\n", text)
-        keys = subprocess.run([PROGRAM, "keys", "--names"], check=True, capture_output=True, text=True).stdout.split()
+        keys = subprocess.run([PROGRAM, "keys", "--names"], check=True, capture_output=True, text=True, timeout=60).stdout.split()
         self.assertGreater(len(keys), 200)
         for key in keys:
             self.assertIn(f"\n.B {key}\n", text)
