@@ -11,6 +11,7 @@
 #include "experiment/processes.h"
 #include "experiment/toml/input.h"
 #include "orchestrator/engines/dds/delivery.h"
+#include "orchestrator/recording/state_arrays.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/report/law_report.h"
 #include "orchestrator/report/prediction_report.h"
@@ -74,23 +75,24 @@ Json PhasesJson(const Experiment& experiment, const Prediction& prediction) {
   return phases;
 }
 
-/// About how large the large files of a run will be (bytes). states.npz has 21 numbers for each agent and tick. What an
-/// agent and a tick take in the recording, compressed, was measured on the experiments in configs: 170 to 220 bytes for
-/// bodies with an airframe, 85 to 105 for others.
+/// About how large the large files of a run will be (bytes). What an agent and a tick take in the recording,
+/// compressed, was measured on the experiments in configs: 170 to 220 bytes for bodies with an airframe, 85 to 105 for
+/// others.
 struct FilesToCome {
   std::uint64_t states_npz = 0, recording = 0;
   std::uint64_t all() const { return states_npz + recording; }
 };
 
 FilesToCome FilesOf(const Experiment& experiment) {
-  constexpr std::uint64_t kStateBytes = std::uint64_t{21} * 8, kOfAirframe = 200, kOfOthers = 100;
+  constexpr std::uint64_t kOfAirframe = 200, kOfOthers = 100;
   const auto rows = static_cast<std::uint64_t>(experiment.ticks() + 1);
   FilesToCome files;
-  for (const AgentConfig& agent : experiment.agents) {
-    if (experiment.output.save_data) files.states_npz += rows * kStateBytes;
-    if (!experiment.record.topics.empty())
-      files.recording += rows * (agent.traits().has_airframe ? kOfAirframe : kOfOthers);
-  }
+  if (experiment.output.save_data)
+    for (const StateArray& array : kStateArrays)
+      files.states_npz += rows * experiment.agents.size() * array.components.size() * sizeof(double);
+  if (experiment.record.topics.empty()) return files;
+  for (const AgentConfig& agent : experiment.agents)
+    files.recording += rows * (agent.traits().has_airframe ? kOfAirframe : kOfOthers);
   return files;
 }
 

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <set>
@@ -27,21 +28,27 @@ struct KeysArgs {
   bool names = false, json = false;
 };
 
-/// Throws ConfigError if there is none.
-std::vector<ListedKey> KeysFrom(const std::string& prefix) {
-  std::vector<ListedKey> keys = AllKeys();
-  std::set<std::string_view> names;  // also of tables
+/// The key, or the table of keys, whose name is nearest to `word`.
+std::optional<std::string> Nearest(const std::string& word, const std::vector<ListedKey>& keys) {
+  std::set<std::string_view> names;
   for (const ListedKey& key : keys)
     for (std::size_t dot = 0; dot != std::string::npos;) {
       dot = key.name.find('.', dot + 1);
       names.insert(std::string_view(key.name).substr(0, dot));
     }
-  if (const auto nearest = DidYouMean(prefix, std::vector(names.begin(), names.end()));
-      std::ranges::none_of(keys, [&](const ListedKey& key) { return key.name.starts_with(prefix); }))
-    throw ConfigError({"keys: expected the beginning of a key, got '" + prefix + "'" +
-                       (nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
-  std::erase_if(keys, [&](const ListedKey& key) { return !key.name.starts_with(prefix); });
-  return keys;
+  return DidYouMean(word, std::vector(names.begin(), names.end()));
+}
+
+/// Throws ConfigError if there is none.
+std::vector<ListedKey> KeysFrom(const std::string& prefix) {
+  const std::vector<ListedKey> all = AllKeys();
+  std::vector<ListedKey> keys;
+  std::ranges::copy_if(all, std::back_inserter(keys),
+                       [&](const ListedKey& key) { return key.name.starts_with(prefix); });
+  if (!keys.empty()) return keys;
+  const auto nearest = Nearest(prefix, all);
+  throw ConfigError({"keys: expected the beginning of a key, got '" + prefix + "'" +
+                     (nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
 }
 
 /// What the key is without a value.

@@ -22,7 +22,7 @@ int View(const ViewArgs& args) {
   StopSignal stop;
   Console console(/*quiet=*/false);
   const Showing showing{
-      .at = args.at, .allowed_origins = args.allowed_origins, .steering = Steering(WhoSteers(args.watch_only))};
+      .at = args.at, .allowed_origins = args.allowed_origins, .steering = SteeringFor(args.watch_only)};
   const int signal = ShowRecording(args.run, showing, "--at", stop, console);
   return signal == 0 ? kExitFailed : 128 + signal;
 }

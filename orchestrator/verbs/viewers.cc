@@ -33,7 +33,7 @@ void AddWatchOnly(CLI::App& command, bool& watch_only) {
                    "let viewers only watch; the address that is printed as 'steer' is for those who may do more");
 }
 
-Steering::By WhoSteers(bool watch_only) { return watch_only ? Steering::By::kToken : Steering::By::kAll; }
+Steering SteeringFor(bool watch_only) { return Steering(watch_only ? Steering::By::kToken : Steering::By::kAll); }
 
 std::vector<std::string> AddressesOf(const std::string& url) {
   std::vector<std::string> addresses;
@@ -65,7 +65,7 @@ Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experi
                                   .page = FindShared("page", "orchestrator/live"),
                                   .source = {.engine = engine},
                                   .pace = requests.status().pace,
-                                  .steering = Steering(WhoSteers(args.watch_only))},
+                                  .steering = SteeringFor(args.watch_only)},
                 [this](const std::string& line) { Log(line); });
   view_->SetExperiment(experiment, ShownKeysOf(experiment));
   events_.emplace(*view_, requests);

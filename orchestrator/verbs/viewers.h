@@ -37,8 +37,8 @@ void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins);
 /// Adds the flag --watch-only.
 void AddWatchOnly(CLI::App& command, bool& watch_only);
 
-/// Who may steer, with --watch-only or without.
-Steering::By WhoSteers(bool watch_only);
+/// With --watch-only, viewers steer who know a new token; without, all.
+Steering SteeringFor(bool watch_only);
 
 /// The addresses at which a server at `url`, "http://0.0.0.0:8765", is reached: `url`, or, if it listens at every
 /// address of this machine, those that others may type.

@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "experiment/toml/section.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/recording/recording.h"
@@ -28,14 +26,13 @@ class RunList : public ::testing::Test {
   std::string Make(const std::string& name, const std::string& time, const std::string& summary) {
     const fs::path folder = fs::path(scratch_.File("runs")) / name / time;
     fs::create_directories(folder / "logs");
-    Write(folder / "config.toml", "format = 1\n[run]\nname = '" + name + "'\n");
-    Write(folder / "summary.json", summary);
-    Write(folder / "paths.png", "12345");
-    Write(folder / "logs" / "orchestrator.log", "");
+    WriteFile((folder / "config.toml").string(), "format = 1\n[run]\nname = '" + name + "'\n");
+    WriteFile((folder / "summary.json").string(), summary);
+    WriteFile((folder / "paths.png").string(), "12345");
+    WriteFile((folder / "logs" / "orchestrator.log").string(), "");
     McapWriter(folder / "run.mcap").Close();
     return folder.string();
   }
-  static void Write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
   /// Moves the config.toml of a run so many hours into the past.
   static void Age(const std::string& run, int hours) {
     const fs::path config = fs::path(run) / "config.toml";
@@ -68,7 +65,7 @@ TEST_F(RunList, TellsTheNewestFirst) {
 
 TEST_F(RunList, SaysNothingOfWhatItCannotRead) {
   const std::string run = Make("a", "b", "no JSON");
-  Write(fs::path(run) / "config.toml", "[[[");
+  WriteFile(run + "/config.toml", "[[[");
   const std::vector<ListedRun> listed = ListRuns(runs());
   ASSERT_EQ(listed.size(), 1u);
   EXPECT_EQ(listed[0].name, "");
@@ -97,7 +94,7 @@ TEST_F(RunList, RemovesARunWithItsNoteAndEmptyFolders) {
 
 TEST_F(RunList, KeepsFilesThatNoRunHasMade) {
   const std::string run = Make("a", "b", "");
-  Write(fs::path(run) / "thesis.tex", "mine");
+  WriteFile(run + "/thesis.tex", "mine");
   RemoveRun(run);
   EXPECT_TRUE(fs::exists(fs::path(run) / "thesis.tex"));
   EXPECT_FALSE(fs::exists(fs::path(run) / "run.mcap"));
@@ -107,7 +104,7 @@ TEST_F(RunList, KeepsFilesThatNoRunHasMade) {
 TEST_F(RunList, RemovesNothingFromAFolderThatNoRunHasMade) {
   const std::string folder = scratch_.File("mine");
   fs::create_directories(folder);
-  Write(fs::path(folder) / "config.toml", "run.duration_s = 1\n");
+  WriteFile(folder + "/config.toml", "run.duration_s = 1\n");
   EXPECT_THAT(
       [&] { RemoveRun(folder); },
       ThrowsMessage<ConfigError>(folder + ": expected the files of an earlier run, got config.toml, which no run "

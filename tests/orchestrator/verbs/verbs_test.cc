@@ -385,8 +385,8 @@ TEST(Runs, ListsRemovesAndKeepsNotes) {
   ScratchFolder scratch;
   const std::string run = scratch.File("runs/a/b");
   std::filesystem::create_directories(run);
-  std::ofstream(run + "/config.toml") << "format = 1\n[run]\nname = 'a'\n";
-  std::ofstream(run + "/summary.json") << R"({"sim_s": 1.5, "exit": 130})";
+  WriteFile(run + "/config.toml", "format = 1\n[run]\nname = 'a'\n");
+  WriteFile(run + "/summary.json", R"({"sim_s": 1.5, "exit": 130})");
   EXPECT_EQ(Printed(SetUpRuns, {run, "--note", "stopped by hand"}), "");
   const std::string text = Printed(SetUpRuns, {scratch.File("runs")});
   EXPECT_THAT(text, AllOf(StartsWith("written              name                 flown     size  exit  folder\n"),
