@@ -36,6 +36,7 @@ constexpr VerbEntry kVerbs[] = {
     {"plot", "draw the pictures of a run again", SetUpPlot},
     {"view", "play a recording on the page of a run", SetUpView},
     {"sweep", "run an experiment over values of its keys and seeds: a table, a picture", SetUpSweep},
+    {"tune", "search for the values of keys that make a figure smallest or largest", SetUpTune},
     {"compare", "the summaries of several runs side by side", SetUpCompare},
     {"verify", "fly a recorded experiment again, and compare bit for bit", SetUpVerify},
     {"recover", "make a whole recording of what a cut or damaged one still holds", SetUpRecover},

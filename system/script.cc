@@ -40,10 +40,14 @@ int RunProgram(const std::vector<std::string>& words, StopSignal& stop) {
   return WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);
 }
 
-int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop) {
+std::vector<std::string> ScriptWords(const std::string& script) {
   // The system's Python, for which matplotlib is installed; PATH may find another one first. It reads no PYTHON*
   // variables (-E) and no packages of the user's (-s), writes no bytecode (-B), and takes names as they are (utf8).
-  std::vector<std::string> words{"/usr/bin/python3", "-E", "-s", "-B", "-X", "utf8", FindShared(script, "scripts")};
+  return {"/usr/bin/python3", "-E", "-s", "-B", "-X", "utf8", FindShared(script, "scripts")};
+}
+
+int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop) {
+  std::vector<std::string> words = ScriptWords(script);
   words.insert(words.end(), arguments.begin(), arguments.end());
   return RunProgram(words, stop);
 }

@@ -20,6 +20,10 @@ std::string AsWord(const std::filesystem::path& path);
 /// std::runtime_error if the program cannot be started, or if it cannot be told how it ended.
 int RunProgram(const std::vector<std::string>& words, StopSignal& stop);
 
+/// The words that run the Python script `script` of scripts/ (installed or in the source tree), by the system's Python.
+/// Throws std::runtime_error if the script is missing.
+std::vector<std::string> ScriptWords(const std::string& script);
+
 /// Runs the Python script `script` of scripts/ (installed or in the source tree) with `arguments`. Returns its exit
 /// code as RunProgram() does. Throws std::runtime_error if the script is missing or cannot be started.
 int RunScript(const std::string& script, const std::vector<std::string>& arguments, StopSignal& stop);

@@ -363,6 +363,7 @@ class Package(unittest.TestCase):
         for name in ["libfastrtps2.9", "libbullet3.24", "libpython3.11", "python3-numpy", "libjs-three", "libjs-dygraphs"]:
             self.assertRegex(depends, rf"\b{re.escape(name)}\b")
         self.assertIn("python3-matplotlib", recommends)
+        self.assertIn("python3-optuna", recommends)
 
 
 if __name__ == "__main__":

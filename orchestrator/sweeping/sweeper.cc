@@ -17,6 +17,7 @@
 #include "orchestrator/sweeping/sweep_checks.h"
 #include "orchestrator/sweeping/table/conclusion.h"
 #include "orchestrator/sweeping/table/metrics.h"
+#include "orchestrator/sweeping/table/outcomes.h"
 #include "orchestrator/sweeping/table/table.h"
 #include "system/build.h"
 #include "system/console.h"
@@ -65,9 +66,10 @@ SweepFile::Cells RowOf(const SweepPoint& point, const WorkerPool::Done& done, co
 
 /// Executes every run of a share that is missing in the table. Updates `outcome` after each run, so that it is right
 /// even if a signal ends this.
-void ExecuteMissing(const SweepPlan& plan, const Shard& shard, const std::vector<std::string>& metrics,
-                    WorkerPool& pool, SweepFile& table, bool quiet, StopSignal& stop, Sweeper::Outcome& outcome) {
-  Progress progress(shard.CountOf(plan.size()), table.rows(), quiet);
+void ExecuteMissing(const SweepPlan& plan, const Sweeper::Options& options, const std::vector<std::string>& metrics,
+                    WorkerPool& pool, SweepFile& table, StopSignal& stop, Sweeper::Outcome& outcome) {
+  const Shard shard = options.shard.value_or(Shard{});
+  Progress progress(shard.CountOf(plan.size()), table.rows(), options.quiet);
   std::size_t next = 0;
   const auto skip_done = [&] {
     while (next < plan.size() && (!shard.Has(next) || table.Has(next))) ++next;
@@ -81,6 +83,7 @@ void ExecuteMissing(const SweepPlan& plan, const Shard& shard, const std::vector
       outcome.failed += !done->failure.empty();
     }
     progress.Show(outcome.flown, outcome.failed);
+    if (options.watch) options.watch(table.rows());
     ThrowIfInterrupted(stop);
   }
 }
@@ -89,8 +92,20 @@ void ExecuteMissing(const SweepPlan& plan, const Shard& shard, const std::vector
 std::optional<SweepIdentity> BegunAt(const std::string& out) { return SweepIdentity::FromText(PlanBeside(out)); }
 
 /// Whether a table of this sweep was begun: it is then gone on with, also if --force has begun it.
-bool IsBegun(const std::optional<SweepIdentity>& begun, const std::string& text, const SweepPlan& plan) {
-  return begun && begun->experiment == text && SweepPlan(begun->words).Text() == plan.Text();
+bool IsBegun(const std::optional<SweepIdentity>& begun, const std::string& text, const SweepPlan& plan,
+             const std::string& search) {
+  if (!begun || begun->experiment != text || begun->search != search) return false;
+  const SweepPlan theirs(begun->words);
+  return search.empty() ? theirs.Text() == plan.Text() : plan.BeginsWith(theirs);
+}
+
+/// The numbers of a column, by run; nothing where there is none.
+std::vector<std::optional<double>> NumbersOf(const std::string& column, const SweepFile::Cells& columns,
+                                             const SweepFile& table) {
+  const auto place = static_cast<std::size_t>(std::ranges::find(columns, column) - columns.begin());
+  std::vector<std::optional<double>> numbers;
+  table.ForEachRow([&](const SweepFile::Cells& cells) { numbers.push_back(NumberInCell(cells.at(place))); });
+  return numbers;
 }
 
 /// Throws ConfigError if the table is one of this sweep by another build: its rows may differ.
@@ -121,9 +136,10 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
   Outcome outcome;
   try {
     const auto begun = BegunAt(options.out);
-    const bool strict = !options.force && !IsBegun(begun, text_, plan_);
-    if (strict && plan_.IsOfTable()) checks.CheckRows();
-    const CheckedRun first = checks.FirstValid(strict);
+    const bool is_search = !options.search.empty();
+    const bool strict = !options.force && !IsBegun(begun, text_, plan_, options.search);
+    if (strict && plan_.IsOfTable() && !is_search) checks.CheckRows();
+    const CheckedRun first = checks.FirstValid(strict && !is_search);
     SweepIdentity& identity = outcome.identity;
     identity = {.build = BuildText(),
                 .experiment = text_,
@@ -132,27 +148,31 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
                 .words = plan_.words(),
                 .own = {},
                 .law_names = {},
-                .laws = checks.Laws()};
+                .laws = checks.Laws(),
+                .search = options.search};
     std::set<std::string> names = SweepLaws(plan_, identity.laws).AllNames();
     names.insert(laws.laws().begin(), laws.laws().end());
     identity.law_names.assign(names.begin(), names.end());
     identity.own = checks.Metrics(SweepColumns(plan_, SweepMetricNames(identity.law_names)));
     const std::vector<std::string> metrics = identity.Metrics();
-    if (!options.metric.empty()) CheckPlotted(options.metric, metrics);
+    outcome.column = options.metric.empty() && !identity.own.empty() ? identity.own.front().name : options.metric;
+    if (!outcome.column.empty()) CheckColumn(is_search ? "--metric" : "--plot", outcome.column, metrics);
     if (strict && !plan_.IsOfTable()) checks.CheckTrials();
     if (strict) checks.CheckSeeds(first);
     if (!fly) return outcome;
     if (!options.force) CheckBuild(begun, identity, options.out);
+    const SweepFile::Cells columns = SweepColumns(plan_, metrics);
     SweepFile table(
-        options.out, SweepColumns(plan_, metrics), identity.Text(), options.force,
+        options.out, columns, identity.Text(), options.force,
         [&](const std::string& theirs) { return identity.DifferenceFrom(theirs); }, &plan_);
     if (!options.quiet)
       for (const std::vector<std::string>& notes : {plan_.notes(), laws.Notes()})
         for (const std::string& note : notes) std::cerr << "sweep: " << note << "\n";
     try {
-      ExecuteMissing(plan_, options.shard.value_or(Shard{}), metrics, pool, table, options.quiet, stop, outcome);
+      ExecuteMissing(plan_, options, metrics, pool, table, stop, outcome);
       table.Sort();
       if (!options.shard) outcome.lines = Conclude(plan_, identity, table, options.out);
+      if (is_search) outcome.values = NumbersOf(outcome.column, columns, table);
     } catch (const Interrupted& interrupted) {
       outcome.signal = interrupted.signal;
     }

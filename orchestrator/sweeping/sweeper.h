@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,10 +21,15 @@ class Sweeper {
     int jobs = 0;                     ///< number of processes; 0: one per core
     std::string out;                  ///< path of the table
     std::optional<Shard> shard = {};  ///< fly only the runs of this share; nothing: all
-    std::string metric;               ///< a column that the table must have; "": none
+    std::string metric;               ///< a column that the table must have; "": none, or of a search the user's first
     MetricFile metric_file = {};
     bool force = false;  ///< overwrite the table of another sweep
     bool quiet = false;
+    /// Not empty: the plan is one of a search, and this says which (SweepIdentity::search). The table may have the rows
+    /// of the first runs; runs that are no valid experiments fail alone.
+    std::string search = {};
+    /// Called now and then with the number of rows in the table; nothing: a line shows the progress.
+    std::function<void(std::size_t rows)> watch = {};
   };
   struct Outcome {
     std::size_t flown = 0;                ///< runs executed by this call
@@ -31,7 +37,9 @@ class Sweeper {
     std::optional<std::size_t> in_table;  ///< rows in the table, also from earlier calls; absent: no table was opened
     std::vector<std::string> lines;       ///< what became of the runs of a whole sweep that came to its end
     SweepIdentity identity = {};
-    int signal = 0;  ///< the signal that ended the sweep early; 0: none
+    std::string column = {};                         ///< of a search: the column of Options::metric
+    std::vector<std::optional<double>> values = {};  ///< of a search: the numbers in it, by run
+    int signal = 0;                                  ///< the signal that ended the sweep early; 0: none
   };
 
   /// `name`: path of the experiment file as typed. `text`: its contents, read once, so that later edits have no effect.

@@ -178,7 +178,7 @@ int Run(const SweepArgs& args) {
   if (!args.quiet && !shard) {
     std::cout << runs << " runs" << FlownNow(runs, outcome.flown) << ": " << out << "\n";
     for (const std::string& line : outcome.lines) std::cout << line << "\n";
-    if (drawable && picture == kExitDone) args.picture.PrintNames(out);
+    if (drawable && picture == kExitDone) args.picture.files.PrintNames(out);
   }
   if (outcome.flown > 0 && outcome.failed == outcome.flown) return kExitFailed;
   return picture;

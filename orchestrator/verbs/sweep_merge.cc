@@ -32,14 +32,14 @@ int Run(const MergeArgs& args) {
   const SweepIdentity identity = IdentityOf(tables.front());
   const SweepPlan plan(identity.words);
   const bool drawable = args.picture.IsDrawable(plan);
-  if (args.picture.metric) CheckPlotted(*args.picture.metric, identity.Metrics());
+  if (args.picture.metric) CheckColumn("--plot", *args.picture.metric, identity.Metrics());
   const Merged merged = Merge(tables, out, args.force);
   StopSignal stop;
   const int picture = drawable ? args.picture.Draw(out, plan, identity, stop) : kExitDone;
   if (args.quiet) return picture;
   std::cout << merged.runs << " runs of " << tables.size() << " tables: " << out << "\n";
   for (const std::string& line : merged.lines) std::cout << line << "\n";
-  if (drawable && picture == kExitDone) args.picture.PrintNames(out);
+  if (drawable && picture == kExitDone) args.picture.files.PrintNames(out);
   return picture;
 }
 

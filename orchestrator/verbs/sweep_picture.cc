@@ -36,8 +36,7 @@ std::string MistakeInFormats(const std::string& list) {
 
 }  // namespace
 
-void SweepPicture::SetUp(CLI::App& command) {
-  command.add_option("--plot", metric, "the column that the picture shows")->type_name("COLUMN");
+void PictureFiles::SetUp(CLI::App& command) {
   command.add_option("--format", format, "formats of the picture: png, pdf, svg; several with commas between (png)")
       ->check(CLI::Validator(MistakeInFormats, ""))
       ->type_name("LIST");
@@ -47,10 +46,20 @@ void SweepPicture::SetUp(CLI::App& command) {
   command.add_flag("--no-plot", none, "draw no picture");
 }
 
+void PictureFiles::PrintNames(const std::string& out) const {
+  for (const std::string& one : NamesIn(format))
+    std::cout << "picture: " << FileBeside(out, "." + one).string() << "\n";
+}
+
+void SweepPicture::SetUp(CLI::App& command) {
+  command.add_option("--plot", metric, "the column that the picture shows")->type_name("COLUMN");
+  files.SetUp(command);
+}
+
 bool SweepPicture::IsDrawable(const SweepPlan& plan) const {
   constexpr std::size_t kMaxKeys = 2;
   if (metric && plan.size() < 2) throw ConfigError({"--plot: expected at least 2 runs to draw, got 1"});
-  if (none || plan.size() < 2) return false;
+  if (files.none || plan.size() < 2) return false;
   if (plan.varied().size() > kMaxKeys && metric)
     throw ConfigError({"--plot: expected at most 2 keys of several values to draw over, got " +
                        std::to_string(plan.varied().size())});
@@ -68,13 +77,8 @@ int SweepPicture::Draw(const std::string& out, const SweepPlan& plan, const Swee
   for (const std::string& key : plan.varied())
     words.insert(words.end(), {"--label", key + "=" + LabelOfKey(key, identity.law_names)});
   if (IsTimeOfEvent(column)) words.emplace_back("--time");
-  words.insert(words.end(), {"--format", format, "--size", size});
+  words.insert(words.end(), {"--format", files.format, "--size", files.size});
   return RunScript("plot_sweep.py", words, stop);
-}
-
-void SweepPicture::PrintNames(const std::string& out) const {
-  for (const std::string& one : NamesIn(format))
-    std::cout << "picture: " << FileBeside(out, "." + one).string() << "\n";
 }
 
 }  // namespace mascot

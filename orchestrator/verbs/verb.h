@@ -44,6 +44,7 @@ std::function<int()> SetUpPs(CLI::App& command);         // ps.cc
 std::function<int()> SetUpSend(CLI::App& command);       // send.cc
 std::function<int()> SetUpCompare(CLI::App& command);    // compare.cc
 std::function<int()> SetUpSweep(CLI::App& command);      // sweep.cc
+std::function<int()> SetUpTune(CLI::App& command);       // tune.cc
 std::function<int()> SetUpView(CLI::App& command);       // view.cc
 std::function<int()> SetUpHost(CLI::App& command);       // host.cc
 

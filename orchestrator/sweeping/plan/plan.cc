@@ -198,8 +198,7 @@ SweepPlan::Axis SweepPlan::ParseSet(const std::string& word) {
   return axis;
 }
 
-/// Draws the values of a --random key. Each key has its own random stream, chosen by its `place` among these options.
-SweepPlan::Axis SweepPlan::ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples) {
+KeyRange ParseKeyRange(const std::string& word) {
   const auto [key, text] = SplitKey("--random", word);
   const std::vector<std::string> parts = Split(text, ':');
   const auto min = ToNumber(parts[0]), max = parts.size() > 1 ? ToNumber(parts[1]) : std::nullopt;
@@ -207,11 +206,20 @@ SweepPlan::Axis SweepPlan::ParseRandom(const std::string& word, std::uint64_t pl
   if (!min || !max || *min > *max || (parts.size() == 3 && !log) || parts.size() > 3 || (log && *min <= 0))
     Refuse("--random", "key=min:max with min <= max, or key=min:max:log with 0 < min <= max", word);
   if (!std::isfinite(log ? *max / *min : *max - *min)) Refuse("--random", "a range that a double can span", word);
+  return {.key = key, .min = *min, .max = *max, .log = log};
+}
+
+std::string KeyRange::Text() const { return RangeText({min, max}) + (log ? ":log" : ""); }
+
+/// Draws the values of a --random key. Each key has its own random stream, chosen by its `place` among these options.
+SweepPlan::Axis SweepPlan::ParseRandom(const std::string& word, std::uint64_t place, std::int64_t samples) {
+  const KeyRange range = ParseKeyRange(word);
   Random random(kSamplesSeed + place, Random::Stream::kSweep);
-  Axis axis{.key = key, .values = {}, .range = RangeText({*min, *max}) + (log ? ":log" : "")};
+  Axis axis{.key = range.key, .values = {}, .range = range.Text()};
   for (std::int64_t i = 0; i < samples; ++i) {
     const double fraction = random.Unit();
-    axis.drawn.push_back(log ? *min * std::pow(*max / *min, fraction) : *min + fraction * (*max - *min));
+    axis.drawn.push_back(range.log ? range.min * std::pow(range.max / range.min, fraction)
+                                   : range.min + fraction * (range.max - range.min));
   }
   return axis;
 }
@@ -295,6 +303,7 @@ std::vector<SweepPlan::Axis> SweepPlan::ColumnsOf(const PlanTable& table) {
     Axis& axis = columns.emplace_back();
     axis.key = table.keys[k];
     axis.column = k + 1;
+    if (!table.options.empty()) axis.option = table.options[k];
     for (const PlanTable::Row& row : table.rows) axis.values.push_back(row.values[k]);
   }
   return columns;
@@ -391,11 +400,13 @@ SweepPoint SweepPlan::operator[](std::size_t run) const {
   for (const Axis& axis : axes_) {
     Override& set = point.overrides.emplace_back();
     set.key = axis.key;
-    set.value = axis.Value(run / axis.stride % axis.size());
+    set.value = axis.ValueIn(run);
     if (!axis.drawn.empty())
       set.origin = fmt::format("--random {}={} ({})", axis.key, axis.range, set.value);
     else if (IsOfSeeds(axis))
       set.origin = "--seeds " + set.value;
+    else if (!axis.option.empty())
+      set.origin = fmt::format("{} ({})", axis.option, set.value);
     else if (axis.column != 0)
       set.origin = fmt::format("{}:{}:{}", table_, lines_[run / row_stride_ % rows_], axis.column);
   }
@@ -426,6 +437,14 @@ std::string SweepPlan::Text() const {
     text += axis.drawn.empty() ? fmt::format("{}={}\n", axis.key, fmt::join(axis.values, ","))
                                : fmt::format("{}={}, {} samples\n", axis.key, axis.range, axis.drawn.size());
   return text + (is_zipped_ ? "row by row\n" : "");
+}
+
+bool SweepPlan::BeginsWith(const SweepPlan& other) const {
+  if (other.keys_ != keys_ || other.size_ > size_) return false;
+  for (std::size_t run = 0; run < other.size_; ++run)
+    for (std::size_t k = 0; k < axes_.size(); ++k)
+      if (axes_[k].ValueIn(run) != other.axes_[k].ValueIn(run)) return false;
+  return true;
 }
 
 std::string SweepPlan::SettingOf(std::string_view key) const {

@@ -24,6 +24,19 @@ struct SweepPoint {
   std::vector<Override> overrides;  ///< in the order of SweepPlan::keys()
 };
 
+/// A key whose values are chosen from a range, KEY=MIN:MAX[:log].
+struct KeyRange {
+  std::string key;
+  double min = 0, max = 0;
+  bool log = false;  ///< it is the logarithm of the value that is chosen
+
+  /// The range in its shortest form: "0.1:1:log".
+  std::string Text() const;
+};
+
+/// The range that --random gives. Throws ConfigError, naming the option and what was expected.
+KeyRange ParseKeyRange(const std::string& word);
+
 struct PlanTable;
 
 /// The runs of a sweep: every combination of key values, random samples and seeds, in this order; seeds change fastest.
@@ -93,6 +106,8 @@ class SweepPlan {
   bool IsZipped() const { return is_zipped_; }
   /// A line for each key with its values, by which plans are compared.
   std::string Text() const;
+  /// Whether the first runs of this plan are those of `other`.
+  bool BeginsWith(const SweepPlan& other) const;
   /// What a key is set to, in words: "0.1, 0.5", "0.1:1, 20 samples"; empty: it is not set.
   std::string SettingOf(std::string_view key) const;
 
@@ -103,11 +118,13 @@ class SweepPlan {
     bool is_range = false;   ///< of A:STEP:B
     std::string range = {};  ///< "0.1:0.1:1", or of --random "0.1:1:log", which has `drawn` in the place of values
     std::vector<double> drawn = {};
-    std::size_t column = 0;  ///< of the table that the values are from, counted from 1; 0: they are from none
-    std::size_t stride = 1;  ///< the value changes after so many runs
+    std::size_t column = 0;   ///< of the table that the values are from, counted from 1; 0: they are from none
+    std::string option = {};  ///< that gave the values of the table; empty: they stand in a file
+    std::size_t stride = 1;   ///< the value changes after so many runs
 
     std::size_t size() const { return drawn.empty() ? values.size() : drawn.size(); }
     std::string Value(std::size_t k) const;
+    std::string ValueIn(std::size_t run) const { return Value(run / stride % size()); }
   };
   /// A run that is checked before the sweep: that of a row, or the first one with another value of one key.
   struct TrialPlace {

@@ -16,6 +16,9 @@ struct PlanTable {
   std::string name;                    ///< of the file, as messages say it
   std::vector<std::string> keys = {};  ///< dotted: the column names
   std::vector<Row> rows = {};
+  /// Of the keys: the option that gave their values, as typed; messages about a value name it. Empty: they stand in the
+  /// file.
+  std::vector<std::string> options = {};
 };
 
 /// Reads a table as comma-separated values: column names, then at least one row. Blank lines are skipped, and spaces

@@ -124,18 +124,18 @@ std::map<std::string, std::string> SweepMetrics(const std::string& summary, cons
   return cells;
 }
 
-void CheckPlotted(const std::string& metric, const std::vector<std::string>& metrics) {
+void CheckColumn(const std::string& option, const std::string& metric, const std::vector<std::string>& metrics) {
   const auto place = std::ranges::find(metrics, metric);
   if (metrics.end() - place > static_cast<std::ptrdiff_t>(kWallClockColumns)) return;
   if (place != metrics.end())
-    throw ConfigError({"--plot: expected a column of which there are statistics, got '" + metric +
+    throw ConfigError({option + ": expected a column of which there are statistics, got '" + metric +
                        "', which depends on the machine"});
   const std::vector<std::string_view> views(metrics.begin(), metrics.end());
   const auto whole =
       std::ranges::find_if(metrics, [&](const std::string& name) { return name.ends_with("." + metric); });
   const auto nearest = whole != metrics.end() ? std::optional(*whole) : DidYouMean(metric, views);
-  throw ConfigError({fmt::format("--plot: expected a column of the table, such as {}, got '{}'{}", kUsualMetric, metric,
-                                 nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
+  throw ConfigError({fmt::format("{}: expected a column of the table, such as {}, got '{}'{}", option, kUsualMetric,
+                                 metric, nearest ? " (did you mean \"" + *nearest + "\"?)" : "")});
 }
 
 }  // namespace mascot

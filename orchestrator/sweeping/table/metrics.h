@@ -18,8 +18,9 @@ inline constexpr std::size_t kWallClockColumns = 2;
 /// Names of the metric columns of a sweep's table: those of figures (orchestrator/report/figures.h), each with one
 /// number. `laws`: names of the laws whose own figures have columns.
 std::vector<std::string> SweepMetricNames(const std::vector<std::string>& laws);
-/// Throws ConfigError, naming --plot, if `column` is not one of `metrics`, or depends on the machine.
-void CheckPlotted(const std::string& column, const std::vector<std::string>& metrics);
+/// Throws ConfigError, naming the `option` that asked for it, if `column` is not one of `metrics`, or depends on the
+/// machine.
+void CheckColumn(const std::string& option, const std::string& column, const std::vector<std::string>& metrics);
 /// The numbers of all figures of a run as cells, by the names of the figures; figures without a number are left out.
 /// The table has columns for some of them.
 std::map<std::string, std::string> SweepMetrics(const Figures& figures);

@@ -20,11 +20,6 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kReasons = 3;         // printed, of those why runs failed
 constexpr std::size_t kReasonLength = 200;  // of the characters printed of each
 
-std::optional<double> NumberIn(const std::string& cell) {
-  if (cell == "true" || cell == "false") return cell == "true" ? 1 : 0;
-  return NumberFrom<double>(cell);
-}
-
 std::string CellOf(const std::optional<double>& value) {
   if (!value) return "";
   return std::isinf(*value) ? "inf" : ShortestFloat(*value);
@@ -51,6 +46,11 @@ bool IsTimeOfEvent(std::string_view column) {
          column.find(".deviation.") == column.npos;
 }
 
+std::optional<double> NumberInCell(const std::string& cell) {
+  if (cell == "true" || cell == "false") return cell == "true" ? 1 : 0;
+  return NumberFrom<double>(cell);
+}
+
 Outcomes::Outcomes(const SweepPlan& plan, const SweepLaws& laws, Cells columns)
     : plan_(plan),
       laws_(laws),
@@ -63,7 +63,7 @@ void Outcomes::Add(const Cells& row) {
   has_failed_.push_back(!row[error_].empty());
   if (has_failed_.back()) AddFailure(row[error_]);
   for (std::size_t k = 0; k < values_.size(); ++k) {
-    const auto value = NumberIn(row[error_ + 1 + k]);
+    const auto value = NumberInCell(row[error_ + 1 + k]);
     if (value && values_[k].empty()) values_[k].assign(run, kNone);
     if (value || !values_[k].empty()) values_[k].push_back(value.value_or(kNone));
     if (value && columns_[error_ + 1 + k] == kSettled)

@@ -19,6 +19,9 @@ namespace mascot {
 /// that has no value there counts as later than all others.
 bool IsTimeOfEvent(std::string_view column);
 
+/// The number in a cell of a table, 1 and 0 for true and false; nothing: there is none.
+std::optional<double> NumberInCell(const std::string& cell);
+
 /// The rows of a sweep's table as numbers, and what they say together. There may be up to kMaxRuns of them.
 class Outcomes {
  public:

@@ -98,12 +98,16 @@ std::string SweepIdentity::DifferenceFrom(const std::string& theirs) const {
   if (!there) return "the form of its .plan, which this build does not read";
   std::vector<std::string> parts;
   if (there->build != build) parts.push_back(BothText("the build", there->build, build));
-  AddPlans(there->words, words, parts);
+  if (there->search != search) parts.push_back(BothText("the search", there->search, search));
+  const bool is_same_search = !search.empty() && there->search == search;
+  const bool grows = is_same_search && SweepPlan(words).BeginsWith(SweepPlan(there->words));
+  if (there->search == search && !grows) AddPlans(there->words, words, parts);
   AddKeys("the experiment file", there->experiment, experiment, parts);
   if (there->metric_file != metric_file) parts.emplace_back("the file of --metric");
   if (parts.empty()) AddKeys("the first run", there->first_run, first_run, parts);
   SweepIdentity same = *this;  // but for how it was typed
   same.words = there->words;
+  if (grows) same.laws = there->laws;
   if (parts.empty() && same.Text() != there->Text()) parts.emplace_back("the laws and metrics of its runs");
   return fmt::format("{}", fmt::join(parts, "; "));
 }

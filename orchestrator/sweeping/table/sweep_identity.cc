@@ -49,6 +49,7 @@ std::string SweepIdentity::Text() const {
   json["metrics"] = own;
   json["law_names"] = law_names;
   json["laws"] = ToJson(laws);
+  if (!search.empty()) json["search"] = search;
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
@@ -63,7 +64,8 @@ std::optional<SweepIdentity> SweepIdentity::FromText(const std::string& text) {
                          .words = json.at("plan").get<SweepPlan::Words>(),
                          .own = json.at("metrics").get<std::vector<PythonMetric>>(),
                          .law_names = json.at("law_names"),
-                         .laws = KnownLawsFrom(json.at("laws"))};
+                         .laws = KnownLawsFrom(json.at("laws")),
+                         .search = json.value("search", "")};
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;
   } catch (const JsonError&) {

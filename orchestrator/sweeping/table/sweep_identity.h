@@ -21,6 +21,9 @@ struct SweepIdentity {
   std::vector<PythonMetric> own;       ///< the user's metrics
   std::vector<std::string> law_names;  ///< names of the laws whose figures have columns
   KnownLaws laws;
+  /// What chooses the runs, in words, if it is a search (orchestrator/searching/): its plan grows, so that a table of
+  /// its first runs is one of this sweep. Empty: it is no search.
+  std::string search = {};
 
   std::string Text() const;
   /// The inverse of Text(); nothing if `text` is not that of an identity.
