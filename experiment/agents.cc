@@ -315,6 +315,16 @@ void ReadHeadings(Section& agents, std::vector<AgentConfig>& team) {
   for (std::size_t i = 0; i < std::min(headings.size(), team.size()); ++i) team[i].heading_rad = headings[i];
 }
 
+/// Reads the targets of each agent.
+void ReadWaypoints(Section& agents, std::vector<AgentConfig>& team) {
+  if (!agents.Has("waypoints_m")) return;
+  const std::vector<std::vector<Eigen::Vector3d>> lists = agents.PointLists("waypoints_m");
+  if (!team.empty() && !agents.Wrong("waypoints_m") && lists.size() != team.size())
+    agents.Fail("waypoints_m", "expected " + std::to_string(team.size()) + " lists of points, one per agent, got " +
+                                   std::to_string(lists.size()));
+  for (std::size_t i = 0; i < std::min(lists.size(), team.size()); ++i) team[i].waypoints_W = lists[i];
+}
+
 }  // namespace
 
 std::span<const Key> AgentsKeys() {
@@ -352,6 +362,10 @@ std::span<const Key> AgentsKeys() {
       key::Points("velocity_m_per_s", {-1000, 1000}, "velocity with which each agent starts, in W")
           .Otherwise("all zero"),
       key::Numbers("heading_rad", {-10, 10}, "yaw with which each agent starts").Otherwise("all zero"),
+      key::PointLists(
+          "waypoints_m", kPlace_m,
+          "for each agent the targets that it flies to, in the place of `law.waypoints_m`; an empty list for an "
+          "agent whose law flies to none"),
       key::Tables("override", override_keys, "what is different about one agent"),
   };
   return keys;
@@ -370,6 +384,7 @@ std::vector<AgentOverride> ReadAgents(Section& agents, int count, Experiment& ex
     overrides.push_back(ReadOverride(section, experiment.agents, seen));
 
   ReadHeadings(agents, experiment.agents);
+  ReadWaypoints(agents, experiment.agents);
   agents.TakeOneOf({"position_m", "random", "starts_file", "starts"});
   std::vector<std::string> given;
   for (const char* key : {"position_m", "random", "starts_file", "starts"})

@@ -89,6 +89,8 @@ struct AgentConfig {
   double heading_rad = 0;                         ///< initial yaw
   ControlConfig control;
   LawConfig law;
+  /// The agent's own targets (m), for laws that fly to waypoints and whose table has none; empty: it has none.
+  std::vector<Eigen::Vector3d> waypoints_W = {};
   bool has_own_law = false;     ///< `law` is the agent's own, not the team's
   bool sends_messages = false;  ///< the agent's law sends messages in some phase: the agent has a topic for them
   /// From start_s to stop_s the agent's law is on, and other agents may hear it; before start_s and from stop_s on, the

@@ -134,6 +134,33 @@ void CheckRotorFailures(Section& physics, const Experiment& experiment) {
   }
 }
 
+/// Checks that the targets of agents are those of agents whose laws fly to them, and that these have some.
+void CheckWaypoints(Section& agents, const Section& law, const std::vector<AgentOverride>& overrides,
+                    const LawCatalog& laws, const Experiment& experiment) {
+  constexpr std::string_view kKey = "waypoints_m";
+  if (!agents.Has(kKey) || agents.Wrong(kKey)) return;
+  if (law.Has(kKey)) return agents.Fail(kKey, "expected one of agents.waypoints_m and law.waypoints_m, got both");
+  for (std::size_t i = 0; i < experiment.agents.size(); ++i) {
+    const AgentConfig& agent = experiment.agents[i];
+    const bool flies =
+        std::ranges::find(laws.Parameters(agent.law.name), kKey, &Key::name) != laws.Parameters(agent.law.name).end();
+    const bool has_own = std::ranges::any_of(overrides, [&](const AgentOverride& override) {
+      return override.id == agent.id && override.law && override.law->Has(kKey);
+    });
+    const std::string who = "because agent " + std::to_string(agent.id) + " flies the law " + agent.law.name;
+    if (flies && has_own && !agent.waypoints_W.empty())
+      agents.FailRow(kKey, i,
+                     "expected an empty list, " + who + " with waypoints_m of its own, got " +
+                         std::to_string(agent.waypoints_W.size()) + " points");
+    else if (flies && !has_own && agent.waypoints_W.empty())
+      agents.FailRow(kKey, i, "expected at least one point, " + who + ", got an empty list");
+    else if (!flies && !agent.waypoints_W.empty())
+      agents.FailRow(kKey, i,
+                     "expected an empty list, " + who + ", which has no waypoints_m, got " +
+                         std::to_string(agent.waypoints_W.size()) + " points");
+  }
+}
+
 /// Checks that a tick is a whole number of physics steps, and a run a whole number of ticks.
 void CheckTime(Section& run, Section& physics, Section& control, const Experiment& experiment) {
   const int rate_hz = experiment.control.rate_hz;
@@ -254,7 +281,10 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   const int rate_hz = known_time ? experiment.control.rate_hz : 0;
   const std::int64_t ticks = known_time ? experiment.ticks() : 0;
   if (!experiment.agents.empty()) {
-    if (laws != nullptr) ReadLawParameters(*laws, law, overrides, experiment);
+    if (laws != nullptr) {
+      CheckWaypoints(agents, law, overrides, *laws, experiment);
+      ReadLawParameters(*laws, law, overrides, experiment);
+    }
     experiment.events = ReadLawSchedules(laws, law, overrides, rate_hz, ticks, experiment);
     if (laws != nullptr) law.Done();
     for (AgentOverride& override : overrides)

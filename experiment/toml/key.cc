@@ -29,6 +29,8 @@ std::string ValueText(ValueKind kind, const Key& key) {
       return "list of lists in " + key.range.Text();
     case ValueKind::kPoints:
       return "list of [x, y, z] in " + key.range.Text();
+    case ValueKind::kPointLists:
+      return "list of lists of [x, y, z] in " + key.range.Text();
     case ValueKind::kTable:
       return "table";
     case ValueKind::kTables:

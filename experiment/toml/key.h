@@ -30,12 +30,13 @@ enum class ValueKind {
   kInteger,
   kBoolean,
   kText,
-  kOneOf,    ///< one of some names
-  kTexts,    ///< a list of strings
-  kVector3,  ///< [x, y, z]
-  kNumbers,  ///< a list of numbers
-  kRows,     ///< a list of lists of numbers
-  kPoints,   ///< a list of [x, y, z]
+  kOneOf,       ///< one of some names
+  kTexts,       ///< a list of strings
+  kVector3,     ///< [x, y, z]
+  kNumbers,     ///< a list of numbers
+  kRows,        ///< a list of lists of numbers
+  kPoints,      ///< a list of [x, y, z]
+  kPointLists,  ///< a list of lists of [x, y, z]
   kTable,
   kTables,  ///< [[...]]
   kAny,     ///< a table whose keys the user chooses
@@ -111,6 +112,9 @@ constexpr Key Rows(Name name, Range range, std::string_view meaning) {
 }
 constexpr Key Points(Name name, Range range, std::string_view meaning) {
   return {.name = name, .kind = ValueKind::kPoints, .meaning = meaning, .range = range};
+}
+constexpr Key PointLists(Name name, Range range, std::string_view meaning) {
+  return {.name = name, .kind = ValueKind::kPointLists, .meaning = meaning, .range = range};
 }
 constexpr Key Table(Name name, std::span<const Key> keys, std::string_view meaning) {
   return {.name = name, .kind = ValueKind::kTable, .meaning = meaning, .keys = keys};

@@ -196,6 +196,10 @@ std::vector<Eigen::Vector3d> Section::Points(std::string_view key, double min, d
   return table_->Points(key, {min, max});
 }
 
+std::vector<std::vector<Eigen::Vector3d>> Section::PointLists(std::string_view key) {
+  return table_->PointLists(key, table_->RowOf(key).range);
+}
+
 Section Section::Child(std::string_view key) {
   const toml::node* node = table_->Find(key);
   if (const Table::Entry* entry = table_->Recorded(key)) return {document_, entry->tables.front()};

@@ -107,6 +107,9 @@ class Section {
   std::vector<Eigen::Vector3d> Points(std::string_view key);
   std::vector<Eigen::Vector3d> Points(std::string_view key, double min, double max);
 
+  /// A list of lists of points, of any lengths (empty if absent).
+  std::vector<std::vector<Eigen::Vector3d>> PointLists(std::string_view key);
+
   /// The kind of the value: "number", "string", "list", "table", ..., or "" if absent.
   std::string Kind(std::string_view key) const;
   /// A table inside this one; an absent one reads as empty.

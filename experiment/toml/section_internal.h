@@ -120,6 +120,10 @@ struct Section::Table {
   std::vector<double> Numbers(std::string_view key, const Range& range);
   std::vector<std::vector<double>> Lists(std::string_view key, const Range& range);
   std::vector<Eigen::Vector3d> Points(std::string_view key, const Range& range);
+  std::vector<std::vector<Eigen::Vector3d>> PointLists(std::string_view key, const Range& range);
+  /// The points in `list`, whose name in messages is `path`: the value of `key` or a row of it. Appends their text.
+  std::vector<Eigen::Vector3d> Points(std::string_view key, const std::string& path, const toml::array& list,
+                                      const Range& range, std::vector<std::string>& texts);
   /// The numbers in `list`, whose name in messages is `path`: the value of `key` or a row of it.
   std::vector<double> Numbers(std::string_view key, const std::string& path, const toml::array& list,
                               const Range& range);

@@ -274,17 +274,43 @@ std::vector<std::vector<double>> Section::Table::Lists(std::string_view key, con
   return lists;
 }
 
+std::vector<Eigen::Vector3d> Section::Table::Points(std::string_view key, const std::string& where,
+                                                    const toml::array& list, const Range& range,
+                                                    std::vector<std::string>& texts) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    points.push_back(Vector3(key, Indexed(where, i), list.get(i), range));
+    if (document->is_recorded) texts.push_back(ListText(NumberTexts({points.back().data(), 3})));
+  }
+  return points;
+}
+
 std::vector<Eigen::Vector3d> Section::Table::Points(std::string_view key, const Range& range) {
   const toml::array* list = List(key, "a list of points [x, y, z]");
   if (list == nullptr) return {};
-  std::vector<Eigen::Vector3d> points;
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    points.push_back(Vector3(key, Indexed(PathOf(key), i), list->get(i), range));
-    if (document->is_recorded) texts.push_back(ListText(NumberTexts({points.back().data(), 3})));
-  }
+  std::vector<Eigen::Vector3d> points = Points(key, PathOf(key), *list, range, texts);
   if (document->is_recorded) Record(key, ListText(texts));
   return points;
+}
+
+std::vector<std::vector<Eigen::Vector3d>> Section::Table::PointLists(std::string_view key, const Range& range) {
+  const toml::array* list = List(key, "a list of lists of points [x, y, z]");
+  if (list == nullptr) return {};
+  std::vector<std::vector<Eigen::Vector3d>> lists(list->size());
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const std::string where = Indexed(PathOf(key), i);
+    const toml::array* points = (*list)[i].as_array();
+    std::vector<std::string> inner;
+    if (points != nullptr)
+      lists[i] = Points(key, where, *points, range, inner);
+    else
+      Expected(key, where, list->get(i), "a list of points [x, y, z]");
+    texts.push_back(ListText(inner));
+  }
+  if (document->is_recorded) Record(key, ListText(texts));
+  return lists;
 }
 
 std::optional<std::string> Section::Table::ResolvedInline() const {

@@ -55,6 +55,8 @@ Json ValueSchema(ValueKind kind, const Key& key) {
       return ListOf(ListOf(NumberSchema(key.range)));
     case ValueKind::kPoints:
       return ListOf(VectorSchema(key.range));
+    case ValueKind::kPointLists:
+      return ListOf(ListOf(VectorSchema(key.range)));
     case ValueKind::kTable:
       return TableSchema(key.keys);
     case ValueKind::kTables:

@@ -1,5 +1,6 @@
 #include "agent/laws/parts/waypoint_flight.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace mascot {
@@ -8,13 +9,15 @@ namespace {
 // Tolerance for rounding: times are ticks divided by the rate.
 constexpr double kRounding_s = 1e-9;
 
-void CheckTimes(Section& law, const std::string& key, const WaypointParams& params) {
-  const auto& times_s = params.times_s;
+/// Notes a mistake if there are times, but not as many as targets. `whose`: " of agent 2".
+void CheckCount(Section& law, const std::string& key, const WaypointParams& params, const std::string& whose) {
+  if (!law.Has(key) || law.Wrong(key) || params.times_s.size() == params.waypoints_W.size()) return;
+  law.Fail(key, "expected " + std::to_string(params.waypoints_W.size()) + " times, one per waypoint" + whose +
+                    ", got " + std::to_string(params.times_s.size()));
+}
+
+void CheckOrder(Section& law, const std::string& key, const std::vector<double>& times_s) {
   if (law.Wrong(key)) return;
-  if (times_s.size() != params.waypoints_W.size()) {
-    law.Fail(key, "expected " + std::to_string(params.waypoints_W.size()) + " times, one per waypoint, got " +
-                      std::to_string(times_s.size()));
-  }
   for (std::size_t n = 1; n < times_s.size(); ++n) {
     if (times_s[n] <= times_s[n - 1]) {
       law.FailRow(key, n,
@@ -23,22 +26,17 @@ void CheckTimes(Section& law, const std::string& key, const WaypointParams& para
   }
 }
 
-}  // namespace
-
-WaypointParams ReadWaypoints(Section& law, const std::string& prefix) {
+/// Reads the keys but waypoints_m.
+WaypointParams ReadFlight(Section& law, const std::string& prefix) {
   const auto key = [&prefix](const char* name) { return prefix + name; };
   law.Supersede(key("times_s"), {key("arrival_radius_m"), key("dwell_s")});
   for (const char* name : {"arrival_radius_m", "dwell_s"}) law.Supersede(key(name), {key("times_s")});
   WaypointParams params;
-  params.waypoints_W = law.Points(key("waypoints_m"));
-  if (params.waypoints_W.empty() && !law.Wrong(key("waypoints_m"))) {
-    law.Fail(key("waypoints_m"), "expected a list of points [x, y, z], got nothing");
-  }
   params.p_gain = law.Number(key("p_gain"));
   params.d_gain = law.Number(key("d_gain"));
   if (law.Has(key("times_s"))) {
     params.times_s = law.Numbers(key("times_s"));
-    CheckTimes(law, key("times_s"), params);
+    CheckOrder(law, key("times_s"), params.times_s);
     for (const char* name : {"arrival_radius_m", "dwell_s"}) {
       if (law.Has(key(name)))
         law.Fail(key(name), "expected only one of " + key("times_s") + " and " + key(name) + ", got both");
@@ -48,6 +46,31 @@ WaypointParams ReadWaypoints(Section& law, const std::string& prefix) {
     params.dwell_s = law.Number(key("dwell_s"));
   }
   return params;
+}
+
+}  // namespace
+
+WaypointParams ReadWaypoints(Section& law, const std::string& prefix) {
+  const std::string key = prefix + "waypoints_m";
+  std::vector<Eigen::Vector3d> waypoints_W = law.Points(key);
+  if (waypoints_W.empty() && !law.Wrong(key)) law.Fail(key, "expected a list of points [x, y, z], got nothing");
+  WaypointParams params = ReadFlight(law, prefix);
+  params.waypoints_W = std::move(waypoints_W);
+  CheckCount(law, prefix + "times_s", params, "");
+  return params;
+}
+
+std::map<int, WaypointParams> ReadWaypointsOfAgents(Section& law, std::span<const AgentConfig> agents) {
+  const bool is_each = std::ranges::any_of(agents, [](const AgentConfig& agent) { return !agent.waypoints_W.empty(); });
+  if (!is_each || law.Has("waypoints_m")) return {{0, ReadWaypoints(law, "")}};
+  std::map<int, WaypointParams> flights{{0, ReadFlight(law, "")}};
+  for (const AgentConfig& agent : agents) {
+    if (agent.waypoints_W.empty()) continue;
+    WaypointParams& flight = flights[agent.id] = flights[0];
+    flight.waypoints_W = agent.waypoints_W;
+    CheckCount(law, "times_s", flight, " of agent " + std::to_string(agent.id));
+  }
+  return flights;
 }
 
 std::optional<WaypointParams> ReadLeaderWaypoints(const LawConfig& config, Section& law) {

@@ -28,7 +28,7 @@ inline constexpr Range kTime_s = {0, 1e6};
 
 inline constexpr Key kWaypointParameters[] = {
     key::Points("waypoints_m", kWaypoint_m, "targets, flown in this order by every agent; the last one is held")
-        .Required()
+        .Otherwise("those of `agents.waypoints_m`; one of the two is required")
         .Live(),
     key::Number("p_gain", kGain, "pull towards the target").Default("1.0").Unit("1/s^2").Live(),
     key::Number("d_gain", kGain, "damping").Default("1.0").Unit("1/s").Live(),
@@ -62,6 +62,9 @@ inline constexpr std::array kLeaderFlightParameters = {
 
 /// Reads the keys of one of the tables above, whose names begin with `prefix`. Mistakes are noted in `law`.
 WaypointParams ReadWaypoints(Section& law, const std::string& prefix);
+/// Reads the keys of kWaypointParameters, for each agent that has targets of its own, by its id, and, under 0, for the
+/// others. If the table has targets, they are those of all.
+std::map<int, WaypointParams> ReadWaypointsOfAgents(Section& law, std::span<const AgentConfig> agents);
 /// Reads the keys of kLeaderFlightParameters; nullopt: the leader has no waypoints. Notes a mistake where such a key
 /// stands without a leader, or without leader_waypoints_m.
 std::optional<WaypointParams> ReadLeaderWaypoints(const LawConfig& law, Section& section);

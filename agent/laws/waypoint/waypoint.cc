@@ -30,14 +30,20 @@ constexpr LawFigure kWaypointFigures[] = {
 };
 
 struct WaypointLawParams final : LawParams {
-  WaypointParams flight;
+  std::map<int, WaypointParams> flights;  ///< as ReadWaypointsOfAgents() has them
 };
+
+const WaypointParams& FlightOf(const AgentConfig& agent) {
+  const auto& flights = ParamsOf<WaypointLawParams>(agent.law).flights;
+  const auto own = flights.find(agent.id);
+  return own != flights.end() ? own->second : flights.at(0);
+}
 
 class Waypoint final : public Law {
  public:
   explicit Waypoint(WaypointFlight flight) : flight_(std::move(flight)) {}
 
-  void Adopt(const AgentConfig& agent) override { flight_.Adopt(ParamsOf<WaypointLawParams>(agent.law).flight); }
+  void Adopt(const AgentConfig& agent) override { flight_.Adopt(FlightOf(agent)); }
 
   Eigen::Vector3d Want_W(double t_s, const Motion& self, std::span<const Heard> /*heard*/) override {
     return flight_.Accel_W(t_s, self);
@@ -47,35 +53,29 @@ class Waypoint final : public Law {
   WaypointFlight flight_;
 };
 
-std::shared_ptr<const LawParams> ReadWaypoint(const Experiment& /*experiment*/, const LawConfig& law,
-                                              Section& section) {
+std::shared_ptr<const LawParams> ReadWaypoint(const Experiment& experiment, const LawConfig& law, Section& section) {
   if (law.leader != 0)
     section.Fail("leader", "expected 0 (every agent flies the waypoints itself), got " + std::to_string(law.leader));
   auto params = std::make_shared<WaypointLawParams>();
-  params->flight = ReadWaypoints(section, "");
+  params->flights = ReadWaypointsOfAgents(section, experiment.agents);
   return params;
 }
 
 std::unique_ptr<Law> MakeWaypoint(const Experiment& experiment, int id) {
   const AgentConfig& agent = experiment.agent(id);
-  return std::make_unique<Waypoint>(
-      WaypointFlight(ParamsOf<WaypointLawParams>(agent.law).flight, agent.law.axes, KnownStart(agent)));
+  return std::make_unique<Waypoint>(WaypointFlight(FlightOf(agent), agent.law.axes, KnownStart(agent)));
 }
 
 std::map<std::string, Value> GoToOfWaypoint(const AgentConfig& agent, const Eigen::Vector3d& p_W, double t_s) {
-  return Destination("", &ParamsOf<WaypointLawParams>(agent.law).flight, p_W, t_s);
+  return Destination("", &FlightOf(agent), p_W, t_s);
 }
 
-std::span<const Eigen::Vector3d> WaypointsOfWaypoint(const AgentConfig& agent) {
-  return ParamsOf<WaypointLawParams>(agent.law).flight.waypoints_W;
-}
+std::span<const Eigen::Vector3d> WaypointsOfWaypoint(const AgentConfig& agent) { return FlightOf(agent).waypoints_W; }
 
 LinearForm LinearWaypoint(const LawConfig& law) {
-  const WaypointParams& flight = ParamsOf<WaypointLawParams>(law).flight;
+  const WaypointParams& flight = ParamsOf<WaypointLawParams>(law).flights.at(0);  // the gains are those of all
   return {.p = flight.p_gain, .beta = flight.d_gain, .listens = false, .leader_flies = true};
 }
-
-const WaypointParams& FlightOf(const AgentConfig& agent) { return ParamsOf<WaypointLawParams>(agent.law).flight; }
 
 class WaypointMeter final : public LawMeter {
  public:

@@ -24,7 +24,7 @@ struct Where {
 
 bool HoldsNumbers(ValueKind kind) {
   return kind == ValueKind::kNumber || kind == ValueKind::kVector3 || kind == ValueKind::kNumbers ||
-         kind == ValueKind::kRows || kind == ValueKind::kPoints;
+         kind == ValueKind::kRows || kind == ValueKind::kPoints || kind == ValueKind::kPointLists;
 }
 
 /// Where the value of `key` stands, a key of a table that stands at `outer`.

@@ -13,6 +13,7 @@
 #include "agent/laws/platoon/string_stability.h"
 #include "agent/laws/trajectory/path_samples.h"
 #include "orchestrator/sweeping/table/metrics.h"
+#include "tests/experiment/fly_rows.h"
 #include "tests/support/ideal_network.h"
 #include "tests/support/law_run.h"
 #include "tests/support/scratch.h"
@@ -58,6 +59,43 @@ TEST(Waypoints, TheHoldOfTheCommandIsPartOfThePrediction) {
   EXPECT_GT(slow.Predicted("overshoot_m") / 0.5, 1.2 * run.Predicted("overshoot_m") / 10) << "the hold destabilises";
   EXPECT_NEAR(slow.Measured("overshoot_m"), slow.Predicted("overshoot_m"), 1e-3);
   EXPECT_NEAR(slow.Measured("tracking_rms_m"), slow.Predicted("tracking_rms_m"), 1e-3);
+}
+
+/// Where the agents of a run with three quadrotors are at its end. `agents`: more lines of [agents], in which each has
+/// its own targets; `law`: of [law].
+std::vector<Eigen::Vector3d> EndOf(const std::string& agents, const std::string& law, const std::string& events = "") {
+  const auto rows =
+      Fly("[run]\nduration_s = 12\n[agents]\ncount = 3\nposition_m = [[0, 0, 2], [0, 4, 2], [0, 8, 2]]\n" + agents +
+          "[law]\nname = 'waypoint'\n" + law + events);
+  std::vector<Eigen::Vector3d> ends_W;
+  for (const Motion& motion : rows.back().motions) ends_W.push_back(motion.p_WB);
+  return ends_W;
+}
+
+TEST(Waypoints, MayBeOnesOfEachAgent) {
+  const std::string each = "waypoints_m = [[[1, 0, 2]], [[0.5, 4, 2], [2, 4, 2]], [[3, 8, 3]]]\n";
+  const std::string own =
+      "[[agents.override]]\nid = 1\nlaw = { waypoints_m = [[1, 0, 2]] }\n"
+      "[[agents.override]]\nid = 2\nlaw = { waypoints_m = [[0.5, 4, 2], [2, 4, 2]] }\n"
+      "[[agents.override]]\nid = 3\nlaw = { waypoints_m = [[3, 8, 3]] }\n";
+  const auto ends_W = EndOf(each, "");
+  EXPECT_TRUE(ends_W.at(0).isApprox(Eigen::Vector3d(1, 0, 2), 0.05)) << ends_W[0];
+  EXPECT_TRUE(ends_W.at(1).isApprox(Eigen::Vector3d(2, 4, 2), 0.05)) << ends_W[1];
+  EXPECT_TRUE(ends_W.at(2).isApprox(Eigen::Vector3d(3, 8, 3), 0.05)) << ends_W[2];
+  EXPECT_EQ(ends_W, EndOf(own, "waypoints_m = [[9, 9, 9]]\n")) << "as if each had them in a law table of its own";
+}
+
+TEST(Waypoints, OfEachAgentGiveWayToEventsForOneAndForAll) {
+  const std::string each = "waypoints_m = [[[1, 0, 2]], [[2, 4, 2]], [[3, 8, 2]]]\n";
+  const auto gone_W = EndOf(each, "", "[[events]]\nat_s = 1.0\ngoto = { agent = 2, position_m = [-1, 4, 2] }\n");
+  EXPECT_TRUE(gone_W.at(1).isApprox(Eigen::Vector3d(-1, 4, 2), 0.05)) << gone_W[1];
+  EXPECT_TRUE(gone_W.at(2).isApprox(Eigen::Vector3d(3, 8, 2), 0.05)) << "the others go on";
+  const auto set_W =
+      EndOf("model = 'double_integrator'\n" + each, "",
+            "[physics]\ncollisions = false\n[[events]]\nat_s = 1.0\nset = { 'law.waypoints_m' = [[0, 2, 5]] }\n");
+  for (const Eigen::Vector3d& end_W : set_W) EXPECT_TRUE(end_W.isApprox(Eigen::Vector3d(0, 2, 5), 0.05)) << end_W;
+  const auto phase_W = EndOf(each, "p_gain = 0.5\n[[law.schedule]]\nat_s = 1.0\np_gain = 1.0\n");
+  EXPECT_TRUE(phase_W.at(2).isApprox(Eigen::Vector3d(3, 8, 2), 0.05)) << "a phase keeps them";
 }
 
 TEST(Waypoints, EachHasItsTimeOfArrivalWhichIsThatOfTheLastAgent) {
