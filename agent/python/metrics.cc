@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
@@ -63,6 +64,10 @@ std::vector<PythonMetric> Defined(const py::dict& space) {
 struct PythonMetrics::Functions {
   std::vector<py::object> calls;  // by PythonMetrics::list_
 };
+
+PythonMetrics::PythonMetrics(const MetricFile& file)
+    : PythonMetrics(file.text, std::filesystem::path(file.path).filename(),
+                    std::filesystem::path(file.path).parent_path(), LawLimits{60, "the limit of a metric"}) {}
 
 PythonMetrics::PythonMetrics(const std::string& text, const std::string& file, const std::string& folder,
                              const LawLimits& limits)

@@ -17,6 +17,12 @@ struct PythonMetric {
   std::string unit;  ///< empty: METRICS names no unit
 };
 
+/// A Python file with metrics, and its contents, read once.
+struct MetricFile {
+  std::string path = {};  ///< empty: there is none
+  std::string text = {};
+};
+
 /// An array of a run, in C order.
 struct RunArray {
   std::string name;
@@ -33,6 +39,8 @@ class PythonMetrics {
   /// Runs `text`, which messages call `file` and whose modules are in `folder`. `limits` holds for this, and for each
   /// call of a metric. Throws std::runtime_error, "FILE:LINE: ...", for mistakes in the text.
   PythonMetrics(const std::string& text, const std::string& file, const std::string& folder, const LawLimits& limits);
+  /// Within the limit of time that metrics have everywhere.
+  explicit PythonMetrics(const MetricFile& file);
   ~PythonMetrics();
   PythonMetrics(const PythonMetrics&) = delete;
   PythonMetrics& operator=(const PythonMetrics&) = delete;

@@ -1,6 +1,5 @@
 #include "orchestrator/sweeping/sweep_work.h"
 
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -10,9 +9,9 @@
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/measuring/run_meter.h"
+#include "orchestrator/recording/run_arrays.h"
 #include "orchestrator/report/run_figures.h"
 #include "orchestrator/sweeping/table/metrics.h"
-#include "orchestrator/sweeping/table/run_arrays.h"
 #include "orchestrator/sweeping/table/sweep_json.h"
 #include "orchestrator/theory/draws.h"
 #include "orchestrator/theory/theory.h"
@@ -20,14 +19,9 @@
 namespace mascot {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr LawLimits kMetricLimit{60, "the limit of a metric"};
-
 /// The metrics of the user's file.
 const PythonMetrics& OwnMetrics(const Sweep& sweep) {
-  const fs::path path = sweep.metric_file.path;
-  if (!*sweep.own) sweep.own->emplace(sweep.metric_file.text, path.filename(), path.parent_path(), kMetricLimit);
+  if (!*sweep.own) sweep.own->emplace(sweep.metric_file);
   return **sweep.own;
 }
 

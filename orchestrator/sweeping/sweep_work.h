@@ -15,12 +15,6 @@
 
 namespace mascot {
 
-/// A Python file with the user's own metrics, and its contents, read once.
-struct MetricFile {
-  std::string path;  ///< empty: there is none
-  std::string text;
-};
-
 /// Experiment file and plan of a sweep. All that this object refers to must outlive it.
 struct Sweep {
   const std::string& name;  ///< path of the experiment file as typed

@@ -5,10 +5,12 @@
 #include <memory>
 #include <optional>
 
+#include "orchestrator/live/recorded/metric_reader.h"
 #include "orchestrator/live/recorded/playback.h"
 #include "orchestrator/live/recorded/projector.h"
 #include "orchestrator/live/recorded/recorded_run.h"
 #include "orchestrator/live/shown/live_view.h"
+#include "orchestrator/live/shown/metric_curves.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/viewers.h"
 #include "system/interruptions.h"
@@ -53,6 +55,13 @@ int ShowRecording(const std::string& run, const Showing& showing, const std::str
     }
   }();
   const Projector projector(recorded, playback, *view, log);
+  std::optional<MetricCurves> metric_curves;
+  std::optional<MetricReader> metric_reader;
+  if (showing.metrics != nullptr) {
+    metric_curves.emplace(recorded.experiment(), *showing.metrics, recorded.last_tick(), MetricCurves::Rows::kAllAtOnce,
+                          [&view](std::string message) { view->SetMetrics(std::move(message)); });
+    metric_reader.emplace(run, *metric_curves, log);
+  }
   PrintAddresses(*view, console);
   return WaitForTheEnd(stop, *view);
 }

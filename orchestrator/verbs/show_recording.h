@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "agent/python/metrics.h"
 #include "orchestrator/live/server/address.h"
 #include "orchestrator/live/server/steering.h"
 #include "system/console.h"
@@ -15,6 +16,7 @@ struct Showing {
   LiveAddress at;
   std::vector<std::string> allowed_origins = {};
   Steering steering;
+  const PythonMetrics* metrics = nullptr;  ///< shown as curves; null: none
 };
 
 /// Serves the page of a run on its recording until a signal. Returns it; 0: an error of ours has ended the view.

@@ -150,6 +150,8 @@ int Up(UpArgs& args) {
     throw ConfigError({"--allow-origin: expected --view with it"});
   if (!args.viewers.at && args.viewers.watch_only) throw ConfigError({"--watch-only: expected --view with it"});
   if (!args.viewers.at && args.viewers.stay) throw ConfigError({"--stay: expected --view with it"});
+  if (!args.viewers.at && !args.viewers.metric_file.empty())
+    throw ConfigError({"--metric: expected --view with it (a sweep has own metrics in its table)"});
   std::optional<EndsAtOnce> before_the_run(stop);
   const Experiment experiment = Load(args);
   args.engine.Refuse(experiment);
@@ -264,6 +266,7 @@ std::function<int()> SetUpUp(CLI::App& command) {
       ->type_name("[ADDRESS:PORT]");
   AddAllowOrigin(command, args->viewers.allowed_origins);
   AddWatchOnly(command, args->viewers.watch_only);
+  AddMetric(command, args->viewers.metric_file);
   command.add_flag("--stay", args->viewers.stay,
                    "with --view: show the recording at the same address when the run has ended, until Ctrl-C; on a "
                    "terminal it is shown anyway if somebody watches");

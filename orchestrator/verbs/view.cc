@@ -16,13 +16,17 @@ struct ViewArgs {
   LiveAddress at;
   std::vector<std::string> allowed_origins;
   bool watch_only = false;
+  std::string metric_file;
 };
 
 int View(const ViewArgs& args) {
   StopSignal stop;
   Console console(/*quiet=*/false);
-  const Showing showing{
-      .at = args.at, .allowed_origins = args.allowed_origins, .steering = SteeringFor(args.watch_only)};
+  const std::unique_ptr<const PythonMetrics> metrics = MetricsOf(args.metric_file);
+  const Showing showing{.at = args.at,
+                        .allowed_origins = args.allowed_origins,
+                        .steering = SteeringFor(args.watch_only),
+                        .metrics = metrics.get()};
   const int signal = ShowRecording(args.run, showing, "--at", stop, console);
   return signal == 0 ? kExitFailed : 128 + signal;
 }
@@ -41,6 +45,7 @@ std::function<int()> SetUpView(CLI::App& command) {
       ->type_name("ADDRESS:PORT");
   AddAllowOrigin(command, args->allowed_origins);
   AddWatchOnly(command, args->watch_only);
+  AddMetric(command, args->metric_file);
   command.footer(
       "Serves the page of a run, and Foxglove's protocol, until Ctrl-C. Only the recording is read, and of it the "
       "parts\nthat are looked at; what was cut short plays up to the cut. docs/live.md says what is to be seen.");

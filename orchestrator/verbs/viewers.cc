@@ -33,6 +33,20 @@ void AddWatchOnly(CLI::App& command, bool& watch_only) {
                    "let viewers only watch; the address that is printed as 'steer' is for those who may do more");
 }
 
+void AddMetric(CLI::App& command, std::string& file) {
+  command
+      .add_option("--metric", file,
+                  "a Python file: each of its functions of the arrays of a run is a curve on the page, as of sweep")
+      ->type_name("FILE");
+}
+
+std::unique_ptr<const PythonMetrics> MetricsOf(const std::string& path) try {
+  if (path.empty()) return nullptr;
+  return std::make_unique<const PythonMetrics>(MetricFile{.path = path, .text = ReadRegularFile(path)});
+} catch (const std::runtime_error& failure) {
+  throw ConfigError({std::string("--metric: ") + failure.what()});
+}
+
 Steering SteeringFor(bool watch_only) { return Steering(watch_only ? Steering::By::kToken : Steering::By::kAll); }
 
 std::vector<std::string> AddressesOf(const std::string& url) {
@@ -56,7 +70,7 @@ void PrintAddresses(const LiveView& view, Console& console) {
 
 Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment,
                  const Prediction& prediction, const RunMeter& meter, RunRequests& requests, Console& console) try
-    : args_(args), requests_(requests), console_(console) {
+    : args_(args), requests_(requests), console_(console), metrics_(MetricsOf(args.metric_file)) {
   if (!args.at) return;
   view_.emplace(experiment, prediction, meter, requests,
                 LiveView::Options{.address = args.at->address,
@@ -69,11 +83,16 @@ Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experi
                 [this](const std::string& line) { Log(line); });
   view_->SetExperiment(experiment, ShownKeysOf(experiment));
   events_.emplace(*view_, requests);
+  if (metrics_)
+    metric_curves_.emplace(experiment, *metrics_, experiment.ticks(), MetricCurves::Rows::kAsTheyCome,
+                           [this](std::string message) { view_->SetMetrics(std::move(message)); });
   requests.CallWhenChanged([this](const RunStatus& status) {
     const auto phase = status.paused ? RunState::Phase::kPaused : RunState::Phase::kRunning;
     view_->SetState({.phase = phase, .pace = status.pace});
   });
   PrintAddresses(*view_, console);
+} catch (const ConfigError&) {
+  throw;
 } catch (const std::runtime_error& failure) {
   throw ConfigError({std::string("--view: ") + failure.what()});
 }
@@ -104,7 +123,9 @@ void Viewers::Keep(const std::string& line) try {
 
 void Viewers::AddTo(std::vector<RowSink*>& sinks) {
   if (!view_) return;
-  for (RowSink* inner : {static_cast<RowSink*>(&*view_), static_cast<RowSink*>(&*events_)})
+  std::vector<RowSink*> inner_sinks{&*view_, &*events_};
+  if (metric_curves_) inner_sinks.push_back(&*metric_curves_);
+  for (RowSink* inner : inner_sinks)
     sinks.push_back(
         sinks_.emplace_back(std::make_unique<ViewSink>(*inner, [this](const std::string& why) { view_->Fail(why); }))
             .get());
@@ -128,10 +149,12 @@ void Viewers::ShowRecording(const RunFolder& folder, StopSignal& stop) try {
   const auto port = at && at->port ? static_cast<std::uint16_t>(*at->port) : args_.at->port;
   const Showing showing{.at = {.address = args_.at->address, .port = port},
                         .allowed_origins = args_.allowed_origins,
-                        .steering = view_->steering()};
+                        .steering = view_->steering(),
+                        .metrics = metrics_.get()};
   requests_.CallWhenChanged(nullptr);
   sinks_.clear();
   events_.reset();
+  metric_curves_.reset();
   view_.reset();  // it has the port
   console_.Line("the recording is shown until Ctrl-C");
   mascot::ShowRecording(folder.path().string(), showing, "--view", stop, console_);

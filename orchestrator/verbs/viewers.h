@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "agent/python/metrics.h"
 #include "experiment/experiment.h"
 #include "orchestrator/control/run_requests.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/live/server/address.h"
 #include "orchestrator/live/shown/live_view.h"
+#include "orchestrator/live/shown/metric_curves.h"
 #include "orchestrator/live/shown/view_sink.h"
 #include "orchestrator/recording/run_folder.h"
 #include "system/console.h"
@@ -24,18 +26,24 @@ class App;
 
 namespace mascot {
 
-/// What --view, --allow-origin, --watch-only and --stay ask for.
+/// What --view, --allow-origin, --watch-only, --stay and --metric ask for.
 struct ViewerArgs {
   std::optional<LiveAddress> at;
   std::vector<std::string> allowed_origins = {};
   bool watch_only = false;
   bool stay = false;
+  std::string metric_file = {};  ///< empty: there is none
 };
 
 /// Adds the option --allow-origin, which may be given several times.
 void AddAllowOrigin(CLI::App& command, std::vector<std::string>& origins);
 /// Adds the flag --watch-only.
 void AddWatchOnly(CLI::App& command, bool& watch_only);
+
+/// Adds the option --metric.
+void AddMetric(CLI::App& command, std::string& file);
+/// The metrics of the file at `path`; null: it is empty. Throws ConfigError, naming --metric, for mistakes in the file.
+std::unique_ptr<const PythonMetrics> MetricsOf(const std::string& path);
 
 /// With --watch-only, viewers steer who know a new token; without, all.
 Steering SteeringFor(bool watch_only);
@@ -104,7 +112,9 @@ class Viewers {
   std::optional<LogFile> file_;
   bool no_file_ = false;  // the log file could not be made
 
+  const std::unique_ptr<const PythonMetrics> metrics_;
   std::optional<LiveView> view_;
+  std::optional<MetricCurves> metric_curves_;
   std::optional<Events> events_;
   std::vector<std::unique_ptr<ViewSink>> sinks_;
 };

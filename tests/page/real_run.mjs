@@ -28,15 +28,15 @@ export async function startRunOf(toml, ...options) {
   return serve(folder, ["up", file, "--view", "--out", join(folder, "run"), ...options]);
 }
 
-/** Flies an experiment, given as TOML, as fast as it goes, and serves its recording; likewise. */
-export async function startRecording(toml) {
+/** Flies an experiment, given as TOML, as fast as it goes, and serves its recording with these options; likewise. */
+export async function startRecording(toml, ...options) {
   const {folder, file} = await written(toml);
   const flight = spawn(
       ORCHESTRATOR,
       ["up", file, "--engine", "inprocess", "--set", "output.save_plot=false", "--out", join(folder, "run"), "--quiet"],
       {stdio: ["ignore", "ignore", "inherit"]});
   await within("the end of a flight", once(flight, "exit"));
-  return serve(folder, ["view", join(folder, "run")]);
+  return serve(folder, ["view", join(folder, "run"), ...options]);
 }
 
 /** The text of an experiment of configs/. */

@@ -410,3 +410,33 @@ test("the page of a recording whose law changes shows the law of the tick", asyn
     await browser.close();
   }
 });
+
+test(
+    "the page has a curve of each of the user's own metrics, whose value is that at the time that is shown",
+    async () => {
+      const metrics = new URL("own_metrics.py", import.meta.url).pathname;
+      const browser = await launch();
+      const recording = await startRecording(await textOf("leaderless.toml"), "--metric", metrics);
+      try {
+        const {page, troubles} = await open(browser, recording.url);
+        await until(page, () => mascot.drawn.metrics.length === 2 && mascot.drawn.metrics[0]?.[0] === 40);
+        assert.deepEqual(
+            await page.locator("#metric-charts h2 .own").allTextContents(), ["flown", "height"],
+            "in the order of METRICS");
+        assert.equal(await page.locator("#metric-charts canvas").count(), 4, "each has a curve, on two layers");
+        const at = async (t_s) => {
+          await page.locator("#seek").fill(String(t_s));
+          await until(page, (t_s) => mascot.t_s === t_s, t_s);
+          return page.locator("#metric-charts h2 b").allTextContents();
+        };
+        assert.deepEqual(await at(4), ["4.000 s", ""], "None: no value yet");
+        const [flown, height] = await at(20);
+        assert.equal(flown, "20.00 s");
+        assert.match(height, / m$/);
+        assert.equal(await page.textContent("#metric-error"), "");
+        assert.deepEqual(troubles, []);
+      } finally {
+        await recording.stop();
+        await browser.close();
+      }
+    });

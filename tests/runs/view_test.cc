@@ -120,6 +120,23 @@ TEST(UpWithView, EndsWithTheRunElsewhere) {
   EXPECT_EQ(up.Wait(), 0) << "there is no terminal";
 }
 
+TEST(UpWithView, RefusesMetricsWithoutItAndMistakesInThem) {
+  const ScratchFolder folder;
+  WriteFile(folder.File("wrong.py"), "METRICS = ['nobody']\n");
+  const std::string up = "'" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") + " --metric ";
+  const Ran alone = Shell(up + folder.File("wrong.py"));
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_THAT(alone.output,
+              HasSubstr("error: --metric: expected --view with it (a sweep has own metrics in its table)\n"));
+  const Ran missing = Shell(up + folder.File("no.py") + " --view 127.0.0.1:0");
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.output, HasSubstr("error: --metric: " + folder.File("no.py") + ": cannot be read"));
+  const Ran wrong = Shell(up + folder.File("wrong.py") + " --view 127.0.0.1:0");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.output,
+              HasSubstr("error: --metric: wrong.py:1: METRICS: expected names of functions, got 'nobody'"));
+}
+
 TEST(UpWithView, RefusesToStayWithoutIt) {
   const Ran run = Shell("'" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") + " --stay");
   EXPECT_EQ(run.exit_code, 2);

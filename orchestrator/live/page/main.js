@@ -34,6 +34,7 @@ const connection = new Connection(
       "/ui/experiment": (bytes) => model.setExperiment(parse(bytes)),
       "/ui/events": (bytes) => model.setEvents(parse(bytes)),
       "/ui/curves": (bytes) => model.setCurves(parse(bytes)),
+      "/ui/metrics": (bytes) => model.setMetrics(parse(bytes)),
       "/ui/frame": (bytes) => {
         newestRow = bytes;
       },

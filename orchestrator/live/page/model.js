@@ -33,6 +33,7 @@ export class Model {
   experiment = null;
   frame = null;
   curves = {rows: []};  // of a run up to when the page was opened, of a recording as far as it has been read
+  metrics = {metrics: [], rows: [], error: ""};  // the user's own, each for the run up to a time
   events = [];
   #expected = [];     // granted here: {tick, words, toml, edge}
   selected = 0;       // number of an agent, 0: none
@@ -42,7 +43,7 @@ export class Model {
 
   /**
    * Calls `listener` after each change of a kind: "connection", "run" (another run, or other agents), "experiment" (a
-   *  value of it), "frame", "curves", "events", "selected".
+   *  value of it), "frame", "curves", "metrics", "events", "selected".
    */
   on(kind, listener) { (this.#listeners[kind] ??= []).push(listener); }
 
@@ -77,6 +78,7 @@ export class Model {
   #forget() {
     this.experiment = this.frame = null;
     this.curves = {rows: []};
+    this.metrics = {metrics: [], rows: [], error: ""};
     this.events = [];
     this.#expected = [];
   }
@@ -101,6 +103,11 @@ export class Model {
   setCurves(curves) {
     this.curves = curves;
     this.#tell("curves");
+  }
+
+  setMetrics(metrics) {
+    this.metrics = metrics;
+    this.#tell("metrics");
   }
 
   setEvents(events) {

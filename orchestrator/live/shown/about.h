@@ -9,7 +9,14 @@
 namespace mascot {
 
 /// Channels of the page, in this order, and the first of those that follow.
-enum UiChannel : Foxglove::ChannelId { kExperimentChannel, kFrameChannel, kEventsChannel, kCurvesChannel, kFirstOfRos };
+enum UiChannel : Foxglove::ChannelId {
+  kExperimentChannel,
+  kFrameChannel,
+  kEventsChannel,
+  kCurvesChannel,
+  kMetricsChannel,
+  kFirstOfRos
+};
 
 /// What a client learns of a run when it connects: the channels of the page, then `ros`; the service; which agent hears
 /// which; that the run ends at `last_tick`. `experiment` must outlive the result.

@@ -9,6 +9,7 @@
 #include "experiment/phase.h"
 #include "idl/topics.h"
 #include "orchestrator/formats/outside_json.h"
+#include "orchestrator/live/shown/metric_curves.h"
 
 namespace mascot {
 namespace {
@@ -55,7 +56,7 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       ros_(experiment),
       ros_channels_(ros_.channels().size()),
       latched_{Shared(ExperimentJson(experiment, TheoryOf(experiment), source_, {})), nullptr,
-               Shared(EventsJson(experiment, {}))},
+               Shared(EventsJson(experiment, {})), nullptr, Shared(MetricCurves::NoMetrics())},
       foxglove_(
           AboutTheRun(experiment, ros_.channels(), source_.recorded ? source_.recorded->last_tick : experiment.ticks()),
           *this),
@@ -134,6 +135,10 @@ void LiveView::SetEvents(std::vector<ShownEvent> events) {
 void LiveView::SetCurves(const Curves& curves) {
   server_.Post(
       [this, json = CurvesJson(experiment_, curves)]() mutable { PublishLatched(kCurvesChannel, std::move(json)); });
+}
+
+void LiveView::SetMetrics(std::string json) {
+  server_.Post([this, json = std::move(json)]() mutable { PublishLatched(kMetricsChannel, std::move(json)); });
 }
 
 void LiveView::PublishEvents() { PublishLatched(kEventsChannel, EventsJson(experiment_, events_)); }

@@ -80,6 +80,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   void OnEvent(const ShownEvent& event, const Experiment& now, const std::vector<ShownKey>& keys);
   /// Sets the curves of a recording: as far as they are known, if it is not read to its end yet.
   void SetCurves(const Curves& curves);
+  /// Sets the curves of the user's own metrics, as MetricCurves (metric_curves.h) publishes them.
+  void SetMetrics(std::string json);
   /// Sets the list of all events.
   void SetEvents(std::vector<ShownEvent> events);
 

@@ -19,7 +19,7 @@ constexpr EnumNames<RunState::Phase, 4> kPhases({{RunState::Phase::kRunning, "ru
                                                  {RunState::Phase::kPaused, "paused"},
                                                  {RunState::Phase::kDone, "done"},
                                                  {RunState::Phase::kFailed, "failed"}});
-constexpr EnumNames<ValueKind, 14> kKinds({{ValueKind::kNone, "none"},
+constexpr EnumNames<ValueKind, 15> kKinds({{ValueKind::kNone, "none"},
                                            {ValueKind::kNumber, "number"},
                                            {ValueKind::kInteger, "integer"},
                                            {ValueKind::kBoolean, "boolean"},
@@ -30,6 +30,7 @@ constexpr EnumNames<ValueKind, 14> kKinds({{ValueKind::kNone, "none"},
                                            {ValueKind::kNumbers, "numbers"},
                                            {ValueKind::kRows, "rows"},
                                            {ValueKind::kPoints, "points"},
+                                           {ValueKind::kPointLists, "point_lists"},
                                            {ValueKind::kTable, "table"},
                                            {ValueKind::kTables, "tables"},
                                            {ValueKind::kAny, "any"}});

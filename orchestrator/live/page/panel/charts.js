@@ -1,5 +1,5 @@
-// The curves: that of the law, disagreement on a logarithmic axis, each beside what theory predicts, and speeds. Those
-// of a recording are whole; a line marks the time that is shown.
+// The curves: that of the law, disagreement on a logarithmic axis, each beside what theory predicts, the user's own
+// metrics, and speeds. Those of a recording are whole; a line marks the time that is shown.
 import {agentColours, styleColour} from "../colours.js";
 import {byId, element, setText, throttled} from "../dom.js";
 import {decayed, exact, figure, fixed, FLOOR, powerOfTen, seconds, typeset} from "../numbers.js";
@@ -31,6 +31,7 @@ export class Charts {
     model.on("run", () => this.#restart());
     model.on("experiment", () => this.#onExperiment());
     model.on("curves", ({curves}) => this.#onCurves(curves));
+    model.on("metrics", () => this.#onMetrics());
     model.on("frame", ({frame}) => this.#onFrame(frame));
     model.on("selected", () => {
       this.#selected.clear();
@@ -58,7 +59,9 @@ export class Charts {
       disagreementAt: (t_s) => disagreement.findLast((row) => row[0] <= t_s + 1e-9),
       curve: ofLaw.at(-1) ?? null,
       curveFrom: ofLaw[0] ?? null,
-      cursor: this.#cursor_s
+      cursor: this.#cursor_s,
+      metrics: this.#model.metrics.metrics.map((_, k) => this.#metricRows(k).at(-1) ?? null),
+      metricAt: (k, t_s) => this.#metricRows(k).findLast((row) => row[0] <= t_s + 1e-9)
     };
   }
 
@@ -103,6 +106,19 @@ export class Charts {
     setText(byId("law-words"), curveWords(curve) || (curve.agrees ? "" : disagreementWords(prediction)));
   }
 
+  /** A section for each of the user's metrics. */
+  #onMetrics() {
+    const {metrics, error} = this.#model.metrics, box = byId("metric-charts");
+    const key = JSON.stringify(metrics);
+    if (box.dataset.metrics !== key) {
+      for (const id of Object.keys(this.#charts).filter((name) => name.startsWith("metric-"))) this.#forget(id);
+      box.dataset.metrics = key;
+      box.replaceChildren(...metrics.map(metricSection), element("p", {className: "muted words", id: "metric-error"}));
+    }
+    setText(byId("metric-error"), error);
+    this.#draw();
+  }
+
   #forget(id) {
     this.#charts[id]?.destroy();
     delete this.#charts[id];
@@ -134,6 +150,19 @@ export class Charts {
                                                                             value]) => [t_s, shown(value), predicted]);
   }
 
+  #metricRows(k) { return this.#model.metrics.rows.map((row) => [row[0], row[k + 1]]); }
+
+  #drawMetrics(frame) {
+    this.#model.metrics.metrics.forEach(({name, unit}, k) => {
+      const rows = this.#metricRows(k), id = `metric-${k}`;
+      const now = rows.findLast(([t_s]) => t_s <= frame.t_s + 1e-9)?.[1] ?? null;
+      setText(byId(`${id}-now`), now === null ? "" : withUnit(now, {unit}));
+      this.#show(
+          id, rows, {valueRange: rangeOf(rows)},
+          () => ({labels: ["t", labelOf(name, unit)], colors: [styleColour("accent")], strokeWidth: 2}));
+    });
+  }
+
   #speedRows() {
     if (this.#model.size <= MOST_SPEEDS) return this.#history.rows.map((row) => [row[0], ...row.slice(FIRST_SPEED)]);
     const first_s = this.#selected.rows[0]?.[0] ?? Infinity, last_s = this.#selected.rows.at(-1)?.[0] ?? -Infinity;
@@ -159,6 +188,7 @@ export class Charts {
       const rows = this.#disagreementRows();
       this.#show("disagreement", rows, {valueRange: decadesOf(rows)}, () => this.#disagreementLook());
     }
+    this.#drawMetrics(frame);
     const speeds = this.#speedRows();
     this.#show("speed", speeds, {valueRange: [0, topOf(speeds)]}, () => this.#speedLook());
   }
@@ -169,7 +199,7 @@ export class Charts {
       return this.#say(id, isRecording ? "The recording is being read." : "The curve begins here when time goes on.");
     }
     if (rows.every(([, ...values]) => values.every((value) => value === null)))
-      return this.#say(id, id === "law" ? "No value yet." : `Nothing above ${exact(FLOOR)} m yet.`);
+      return this.#say(id, id === "disagreement" ? `Nothing above ${exact(FLOOR)} m yet.` : "No value yet.");
     if (this.#model.isRecording) ranges = {...ranges, dateWindow: [0, this.#model.end_s]};
     if (this.#charts[id])
       this.#charts[id].updateOptions({file: rows, ...ranges});
@@ -229,7 +259,7 @@ export class Charts {
   }
 
   #lawLook({name, unit, decays}) {
-    const measured = `${name}${unit ? ` (${typeset(unit)})` : ""}`;
+    const measured = labelOf(name, unit);
     const look = {
       labels: ["t", measured, "theory"],
       colors: [styleColour("accent"), styleColour("muted")],
@@ -257,6 +287,16 @@ export class Charts {
     const colors = many ? ["accent", "text", "muted", "velocity"].map(styleColour) : agentColours(size);
     return {labels: ["t", ...names], colors};
   }
+}
+
+/** The label of a curve: "path length (m)". */
+function labelOf(name, unit) { return `${name}${unit ? ` (${typeset(unit)})` : ""}`; }
+
+function metricSection({name}, k) {
+  const heading = element(
+      "h2", {}, element("span", {className: "own", textContent: name}), " ", element("b", {id: `metric-${k}-now`}));
+  const chart = element("div", {id: `metric-${k}`, className: "plot", role: "img", "aria-label": `${name} over time`});
+  return element("section", {className: "chart"}, heading, chart);
 }
 
 /** A value as a logarithmic axis shows it; null: below its floor. */

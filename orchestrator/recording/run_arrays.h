@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "agent/python/metrics.h"
@@ -14,9 +16,16 @@ class RunArrays final : public RowSink {
  public:
   explicit RunArrays(const Experiment& experiment);
 
-  void Add(const FlownRow& row) override;
+  void Add(const FlownRow& row) override { Add(row.tick(), row.decoded()); }
+  void Add(std::int64_t tick, const DecodedRow& row);
+  /// How many rows there are.
+  std::size_t rows() const { return values_[0].size(); }
   /// The arrays as np.load() would read them from states.npz. Valid until the next Add().
-  std::vector<RunArray> All() const;
+  std::vector<RunArray> All() const { return First(rows()); }
+  /// The arrays of the first rows alone. If that many rows were announced by Reserve(), they stay valid.
+  std::vector<RunArray> First(std::size_t rows) const;
+  /// Makes room for so many rows.
+  void Reserve(std::size_t rows);
 
  private:
   const Experiment& experiment_;

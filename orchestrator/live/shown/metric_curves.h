@@ -1,0 +1,80 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "agent/python/metrics.h"
+#include "orchestrator/recording/run_arrays.h"
+#include "orchestrator/team/row_sink.h"
+
+namespace mascot {
+
+/// The metrics of a user's Python file as curves: the value of each at a time is that of the run up to then. A thread
+/// of this object evaluates them, so that nobody waits for the user's code.
+class MetricCurves final : public RowSink {
+ public:
+  /// Ticks at which the metrics are evaluated.
+  static constexpr std::int64_t kPoints = 200;
+
+  enum class Rows {
+    kAsTheyCome,  ///< of a run: if evaluating is slow, times are left out, so that it takes a tenth of one core
+    kAllAtOnce,   ///< of a recording
+  };
+
+  /// `last_tick`: of the run. `publish` takes the message of /ui/metrics whenever there is more, from this object's
+  /// thread. All arguments but `last_tick` and `rows` must outlive this object.
+  MetricCurves(const Experiment& experiment, const PythonMetrics& metrics, std::int64_t last_tick, Rows rows,
+               std::function<void(std::string)> publish);
+  MetricCurves(const MetricCurves&) = delete;
+  MetricCurves& operator=(const MetricCurves&) = delete;
+
+  /// The message where there are no metrics.
+  static std::string NoMetrics();
+
+  // From one thread.
+  void Add(const FlownRow& row) override { Add(row.tick(), row.decoded()); }
+  /// Takes the row of the next tick, from 0.
+  void Add(std::int64_t tick, const DecodedRow& row);
+
+  // From any thread.
+  /// Waits until the metrics of all rows that were added are published. For tests.
+  void Wait();
+
+ private:
+  using WallClock = std::chrono::steady_clock;
+  struct Point {
+    std::int64_t tick = 0;
+    std::vector<std::optional<double>> values;  ///< of metrics_.list()
+  };
+
+  void Run(const std::stop_token& over);
+  std::optional<std::int64_t> NextTick() const;
+  void Evaluate(std::int64_t tick);
+  std::string Message() const;
+
+  const Experiment& experiment_;
+  const PythonMetrics& metrics_;
+  const std::int64_t last_tick_, every_;
+  const Rows rows_;
+  const std::function<void(std::string)> publish_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  RunArrays arrays_;            // guarded by mutex_ but for rows that are there
+  std::int64_t evaluated_ = 0;  // guarded by mutex_: the tick of the last evaluation
+  bool is_idle_ = true;         // guarded by mutex_
+  std::vector<Point> points_;   // of the thread
+  std::string error_;           // of the thread: why the last evaluation failed
+  WallClock::time_point published_;
+  std::jthread thread_;  // last: it uses the others
+};
+
+}  // namespace mascot
