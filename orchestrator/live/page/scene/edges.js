@@ -35,7 +35,7 @@ export class Edges extends Ribbons {
     const pairs = new Set(drawn.map(([hearer, heard]) => `${hearer} ${heard}`));
     this.#edges = drawn;
     this.#shifts = drawn.map(([hearer, heard]) => (pairs.has(`${heard} ${hearer}`) ? 2.5 : 0));
-    this.#density = Math.max(0.12, Math.min(1, Math.sqrt(120 / Math.max(1, drawn.length))));
+    this.#density = densityOf(drawn.length);
     this.#now = new Float32Array(5 * drawn.length);
     this.count = drawn.length;
     this.paintAll();
@@ -85,4 +85,13 @@ export class Edges extends Ribbons {
 
   /** The shift of an edge to its left, in pixels. */
   shift(k) { return this.#shifts[k]; }
+}
+
+/**
+ * How much of its alpha each of so many edges has. Some hundred edges stand beside each other; of some thousand, dozens
+ * cover each agent, and shall together still let it be seen.
+ */
+function densityOf(count) {
+  const beside = Math.sqrt(120 / Math.max(1, count)), over = 1500 / Math.max(1, count);
+  return Math.max(0.015, Math.min(1, beside) * Math.min(1, over));
 }
