@@ -171,8 +171,11 @@ void Section::Document::ThrowIfWrong() const {
   if (mistakes_.empty()) return;
   std::vector<std::string> texts;
   for (const Mistake& mistake : mistakes_) {
-    const std::string elsewhere = mistake.unknown.empty() ? "" : top->PathWith(mistake.unknown);
-    texts.push_back(mistake.text + (elsewhere.empty() ? "" : " (did you mean \"" + elsewhere + "\"?)"));
+    std::string elsewhere;
+    if (!mistake.unknown.empty())
+      for (const std::string& path : top->PathsWith(mistake.unknown))
+        elsewhere += (elsewhere.empty() ? "\"" : "\" or \"") + path;
+    texts.push_back(mistake.text + (elsewhere.empty() ? "" : " (did you mean " + elsewhere + "\"?)"));
   }
   if (left_out_) texts.push_back(*left_out_ + ": too many mistakes: this one and others are left out");
   throw ConfigError(std::move(texts));

@@ -21,7 +21,7 @@ struct Section::Document {
 
   /// Stores a mistake; noted again, it counts once (laws are made once per agent, and each may note it).
   void Note(const toml::source_region& place, const std::string& path, const std::string& message);
-  /// Notes that the table has no key `key`. If another table has one, the message will name it, unless this one is in a
+  /// Notes that the table has no key `key`. If other tables have one, the message will name it, unless this one is in a
   /// list, where keys mean less than elsewhere.
   void NoteUnknown(const toml::source_region& place, const std::string& path, const std::string& key);
   /// As Note(), for a `text` that names its place already; listed as if at `place`.
@@ -95,9 +95,9 @@ struct Section::Table {
   /// As Get(); from now on `key` is a known key.
   const toml::node* Find(std::string_view key);
   bool Wrong(std::string_view key) const;
-  /// The path of the first key of this name that was asked for of this table or of one within it, but for those of
-  /// lists; empty: none was.
-  std::string PathWith(std::string_view key) const;
+  /// The paths of the keys of this name that were asked for of this table and of those within it, but for those of
+  /// lists.
+  std::vector<std::string> PathsWith(std::string_view key) const;
   /// The entry of `key`, or null.
   Entry* Recorded(std::string_view key);
   /// Stores `value` as the entry of `key`.

@@ -1,6 +1,7 @@
 // One table of a TOML file: its rows, what was asked of it, and the text of what was read.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "experiment/toml/section_internal.h"
 
@@ -117,14 +118,15 @@ const toml::node* Section::Table::Find(std::string_view key) {
   return Get(key);
 }
 
-std::string Section::Table::PathWith(std::string_view key) const {
-  if (known.contains(key)) return PathOf(key);
+std::vector<std::string> Section::Table::PathsWith(std::string_view key) const {
+  std::vector<std::string> paths;
+  if (known.contains(key)) paths.push_back(PathOf(key));
   for (const Entry& entry : entries) {
     if (entry.is_list) continue;
     for (const std::shared_ptr<Table>& table : entry.tables)
-      if (std::string found = table->PathWith(key); !found.empty()) return found;
+      std::ranges::move(table->PathsWith(key), std::back_inserter(paths));
   }
-  return "";
+  return paths;
 }
 
 bool Section::Table::Wrong(std::string_view key) const {
