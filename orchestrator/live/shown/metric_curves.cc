@@ -15,49 +15,51 @@ constexpr int kRestPerWork = 9;  // of a run: so many times as long as it works,
 
 }  // namespace
 
-MetricCurves::MetricCurves(const Experiment& experiment, const PythonMetrics& metrics, std::int64_t last_tick,
-                           Rows rows, std::function<void(std::string)> publish)
+MetricCurves::MetricCurves(const Experiment& experiment, const PythonMetrics& metrics, std::int64_t last_row, Rows rows,
+                           std::function<void(std::string)> publish)
     : experiment_(experiment),
       metrics_(metrics),
-      last_tick_(last_tick),
-      every_(std::max<std::int64_t>(1, (last_tick + kPoints - 1) / kPoints)),
+      last_row_(last_row),
+      every_(std::max<std::int64_t>(1, (last_row + kPoints - 1) / kPoints)),
       rows_(rows),
       publish_(std::move(publish)),
       arrays_(experiment) {
-  arrays_.Reserve(static_cast<std::size_t>(last_tick + 1));
+  arrays_.Reserve(static_cast<std::size_t>(last_row + 1));
   publish_(Message());
   thread_ = std::jthread([this](const std::stop_token& over) { Run(over); });
 }
 
 void MetricCurves::Add(std::int64_t tick, const DecodedRow& row) {
   const std::lock_guard lock(mutex_);
+  const auto number = static_cast<std::int64_t>(arrays_.rows());
   arrays_.Add(tick, row);
-  if (tick % every_ == 0 || tick == last_tick_) changed_.notify_all();
+  ticks_.push_back(tick);
+  if (number % every_ == 0 || number == last_row_) changed_.notify_all();
 }
 
-/// The tick to evaluate next; nothing: there is none yet. The caller holds mutex_.
-std::optional<std::int64_t> MetricCurves::NextTick() const {
+/// The row to evaluate next; nothing: there is none yet. The caller holds mutex_.
+std::optional<std::int64_t> MetricCurves::NextRow() const {
   const std::int64_t there = static_cast<std::int64_t>(arrays_.rows()) - 1;
-  if (there >= last_tick_ && evaluated_ + every_ >= last_tick_)
-    return evaluated_ < last_tick_ ? std::optional(last_tick_) : std::nullopt;
+  if (there >= last_row_ && evaluated_ + every_ >= last_row_)
+    return evaluated_ < last_row_ ? std::optional(last_row_) : std::nullopt;
   const std::int64_t next = rows_ == Rows::kAsTheyCome ? there / every_ * every_ : evaluated_ + every_;
   return next > evaluated_ && next <= there ? std::optional(next) : std::nullopt;
 }
 
 void MetricCurves::Run(const std::stop_token& over) {
   while (!over.stop_requested()) {
-    std::optional<std::int64_t> tick;
+    std::optional<std::int64_t> row;
     {
       std::unique_lock lock(mutex_);
-      if (!changed_.wait(lock, over, [&] { return (tick = NextTick()).has_value(); })) return;
+      if (!changed_.wait(lock, over, [&] { return (row = NextRow()).has_value(); })) return;
       is_idle_ = false;
     }
     const auto begin = WallClock::now();
-    Evaluate(*tick);
+    Evaluate(*row);
     const auto end = WallClock::now();
     std::unique_lock lock(mutex_);
-    evaluated_ = *tick;
-    const bool is_last = !NextTick();
+    evaluated_ = *row;
+    const bool is_last = !NextRow();
     if (is_last || end >= published_ + kBetweenMessages) {
       lock.unlock();
       publish_(Message());
@@ -66,19 +68,19 @@ void MetricCurves::Run(const std::stop_token& over) {
     }
     is_idle_ = is_last;
     changed_.notify_all();
-    if (rows_ == Rows::kAsTheyCome && evaluated_ < last_tick_)
+    if (rows_ == Rows::kAsTheyCome && evaluated_ < last_row_)
       changed_.wait_for(lock, over, kRestPerWork * (end - begin), [] { return false; });
   }
 }
 
-void MetricCurves::Evaluate(std::int64_t tick) {
+void MetricCurves::Evaluate(std::int64_t row) {
   std::vector<RunArray> arrays;
+  Point& point = points_.emplace_back();
   {
     const std::lock_guard lock(mutex_);
-    arrays = arrays_.First(static_cast<std::size_t>(tick + 1));
+    arrays = arrays_.First(static_cast<std::size_t>(row + 1));
+    point.tick = ticks_[static_cast<std::size_t>(row)];
   }
-  Point& point = points_.emplace_back();
-  point.tick = tick;
   try {
     point.values = metrics_.Of(arrays);
     error_.clear();
@@ -104,7 +106,7 @@ std::string MetricCurves::Message() const {
 
 void MetricCurves::Wait() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return is_idle_ && !NextTick(); });
+  changed_.wait(lock, [this] { return is_idle_ && !NextRow(); });
 }
 
 }  // namespace mascot

@@ -21,7 +21,7 @@ namespace mascot {
 /// of this object evaluates them, so that nobody waits for the user's code.
 class MetricCurves final : public RowSink {
  public:
-  /// Ticks at which the metrics are evaluated.
+  /// Rows at which the metrics are evaluated.
   static constexpr std::int64_t kPoints = 200;
 
   enum class Rows {
@@ -29,9 +29,9 @@ class MetricCurves final : public RowSink {
     kAllAtOnce,   ///< of a recording
   };
 
-  /// `last_tick`: of the run. `publish` takes the message of /ui/metrics whenever there is more, from this object's
-  /// thread. All arguments but `last_tick` and `rows` must outlive this object.
-  MetricCurves(const Experiment& experiment, const PythonMetrics& metrics, std::int64_t last_tick, Rows rows,
+  /// `last_row`: number of the run's last row, from 0. `publish` takes the message of /ui/metrics whenever there is
+  /// more, from this object's thread. All arguments but `last_row` and `rows` must outlive this object.
+  MetricCurves(const Experiment& experiment, const PythonMetrics& metrics, std::int64_t last_row, Rows rows,
                std::function<void(std::string)> publish);
   MetricCurves(const MetricCurves&) = delete;
   MetricCurves& operator=(const MetricCurves&) = delete;
@@ -41,7 +41,7 @@ class MetricCurves final : public RowSink {
 
   // From one thread.
   void Add(const FlownRow& row) override { Add(row.tick(), row.decoded()); }
-  /// Takes the row of the next tick, from 0.
+  /// Takes the next row: that of tick 0, of every tick or, of a recording, of some.
   void Add(std::int64_t tick, const DecodedRow& row);
 
   // From any thread.
@@ -56,23 +56,24 @@ class MetricCurves final : public RowSink {
   };
 
   void Run(const std::stop_token& over);
-  std::optional<std::int64_t> NextTick() const;
-  void Evaluate(std::int64_t tick);
+  std::optional<std::int64_t> NextRow() const;
+  void Evaluate(std::int64_t row);
   std::string Message() const;
 
   const Experiment& experiment_;
   const PythonMetrics& metrics_;
-  const std::int64_t last_tick_, every_;
+  const std::int64_t last_row_, every_;
   const Rows rows_;
   const std::function<void(std::string)> publish_;
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  RunArrays arrays_;            // guarded by mutex_ but for rows that are there
-  std::int64_t evaluated_ = 0;  // guarded by mutex_: the tick of the last evaluation
-  bool is_idle_ = true;         // guarded by mutex_
-  std::vector<Point> points_;   // of the thread
-  std::string error_;           // of the thread: why the last evaluation failed
+  RunArrays arrays_;                 // guarded by mutex_ but for rows that are there
+  std::vector<std::int64_t> ticks_;  // of the rows; guarded by mutex_
+  std::int64_t evaluated_ = 0;       // guarded by mutex_: the row of the last evaluation
+  bool is_idle_ = true;              // guarded by mutex_
+  std::vector<Point> points_;        // of the thread
+  std::string error_;                // of the thread: why the last evaluation failed
   WallClock::time_point published_;
   std::jthread thread_;  // last: it uses the others
 };
