@@ -4,8 +4,9 @@
 
 #include "bus/wire.h"
 #include "idl/schemas.h"
-#include "orchestrator/live/shown/ros_scene.h"
+#include "orchestrator/live/shown/shown_moment.h"
 #include "orchestrator/recording/topic_filter.h"
+#include "orchestrator/ros/ros_scene.h"
 
 namespace mascot {
 namespace {
@@ -34,16 +35,16 @@ class RosChannels::Scene {
     ++rows_;
     if (const std::int64_t by = row.tick - std::exchange(tick_, row.tick); by < 0 || by > trail_ticks_)
       markers_.ClearTrails();  // a viewer sought another place of a recording
-    if (rows_ % kRowsPerTrailPoint == 0) markers_.AddToTrails(row);
+    if (rows_ % kRowsPerTrailPoint == 0) markers_.AddToTrails(row.decoded.motions);
   }
-  std::string Message(const ShownRow& row, std::uint64_t time_ns) const {
-    if (rows_ % kRowsPerScene == 0) return All(row, time_ns);
+  std::string Message(const ShownRow& row) const {
+    if (rows_ % kRowsPerScene == 0) return All(row);
     if (experiment_.graph.edges() > kFewEdges) return {};
-    visualization_msgs::msg::MarkerArray edges = markers_.Edges(row, time_ns);
+    visualization_msgs::msg::MarkerArray edges = markers_.Edges(MomentOf(experiment_, row));
     return CdrOf<ScenePubSub>(edges);
   }
-  std::string All(const ShownRow& row, std::uint64_t time_ns) const {
-    visualization_msgs::msg::MarkerArray all = markers_.All(row, time_ns);
+  std::string All(const ShownRow& row) const {
+    visualization_msgs::msg::MarkerArray all = markers_.All(MomentOf(experiment_, row));
     return CdrOf<ScenePubSub>(all);
   }
 
@@ -84,13 +85,13 @@ void RosChannels::SetRow(const ShownRow& row) {
 }
 
 std::string RosChannels::Transforms() const {
-  tf2_msgs::msg::TFMessage message = TransformsOf(*row_, StampNs(row_->tick, experiment_.control.rate_hz));
+  tf2_msgs::msg::TFMessage message = TransformsOf(MomentOf(experiment_, *row_));
   return CdrOf<tf2_msgs::msg::TFMessagePubSubType>(message);
 }
 
 std::string RosChannels::Message(std::size_t channel) {
   if (channel == kTfChannel) return Transforms();
-  if (channel == kSceneChannel) return scene_->Message(*row_, StampNs(row_->tick, experiment_.control.rate_hz));
+  if (channel == kSceneChannel) return scene_->Message(*row_);
   if (channel == event_channel()) return {};
   if (bytes_ == nullptr) bytes_ = &encoder_.Encode(row_->tick, row_->decoded);
   const Row::Bytes& bytes = SampleOf(*bytes_, topics_[channel - kTopicsBefore]);
@@ -106,7 +107,7 @@ std::string RosChannels::Message(const ShownEvent& event) const {
 }
 
 std::string RosChannels::FirstMessage(std::size_t channel) {
-  if (channel == kSceneChannel) return scene_->All(*row_, StampNs(row_->tick, experiment_.control.rate_hz));
+  if (channel == kSceneChannel) return scene_->All(*row_);
   return Message(channel);
 }
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bus/wire.h"
+#include "orchestrator/live/shown/shown_moment.h"
 
 namespace mascot {
 namespace {
@@ -41,19 +41,17 @@ std::int64_t RosView::TakeNewest() {
     if (newest_.tick <= shown_.tick) return shown_.tick;
     std::swap(newest_, shown_);
   }
-  if (rows_++ % kRowsPerPoint == 0) scene_.AddToTrails(shown_);
+  if (rows_++ % kRowsPerPoint == 0) scene_.AddToTrails(shown_.decoded.motions);
   return shown_.tick;
 }
 
-std::uint64_t RosView::shown_ns() const { return StampNs(shown_.tick, experiment_.control.rate_hz); }
-
 RosSource::Bytes RosView::Transforms() const {
-  tf2_msgs::msg::TFMessage transforms = TransformsOf(shown_, shown_ns());
+  tf2_msgs::msg::TFMessage transforms = TransformsOf(MomentOf(experiment_, shown_));
   return BytesOf(CdrOf<tf2_msgs::msg::TFMessagePubSubType>(transforms));
 }
 
 RosSource::Bytes RosView::Scene() const {
-  visualization_msgs::msg::MarkerArray all = scene_.All(shown_, shown_ns());
+  visualization_msgs::msg::MarkerArray all = scene_.All(MomentOf(experiment_, shown_));
   return BytesOf(CdrOf<visualization_msgs::msg::MarkerArrayPubSubType>(all));
 }
 

@@ -6,9 +6,9 @@
 
 #include "experiment/experiment.h"
 #include "orchestrator/engines/ros_source.h"
-#include "orchestrator/live/shown/ros_scene.h"
 #include "orchestrator/live/shown/ui_channels.h"
 #include "orchestrator/measuring/run_meter.h"
+#include "orchestrator/ros/ros_scene.h"
 #include "orchestrator/team/row_sink.h"
 
 namespace mascot {
@@ -31,8 +31,6 @@ class RosView final : public RowSink, public RosSource {
   Bytes Scene() const override;
 
  private:
-  std::uint64_t shown_ns() const;
-
   const Experiment& experiment_;
   const RunMeter& meter_;
 

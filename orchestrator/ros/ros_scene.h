@@ -3,15 +3,26 @@
 #include <viewPubSubTypes.h>
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <deque>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "agent/neighbours.h"
+#include "base/motion.h"
 #include "bus/cdr.h"
 #include "experiment/experiment.h"
-#include "orchestrator/live/shown/ui_channels.h"
 
 namespace mascot {
+
+/// A tick of a run, as scenes and transforms show it.
+struct SceneMoment {
+  std::uint64_t time_ns = 0;
+  std::span<const Motion> motions;  ///< by id - 1
+  /// In increasing order of hearer, then of heard; empty: no edges are shown.
+  std::span<const EdgeNow> edges = {};
+};
 
 /// Frame in which positions are given: W.
 inline constexpr const char* kWorldFrame = "world";
@@ -28,19 +39,19 @@ std::string CdrOf(typename PubSub::type& sample) {
 std_msgs::msg::Header HeaderOf(std::uint64_t time_ns, const std::string& frame);
 
 /// The places of the agents: from kWorldFrame to a frame for each agent, which has the agent's name.
-tf2_msgs::msg::TFMessage TransformsOf(const ShownRow& row, std::uint64_t time_ns);
+tf2_msgs::msg::TFMessage TransformsOf(const SceneMoment& now);
 
 /// A run as markers of RViz. Bodies and numbers are in the frames of their agents, which /tf moves.
 class RosScene {
  public:
   explicit RosScene(const Experiment& experiment) : experiment_(experiment), trails_(experiment.agents.size()) {}
   /// Adds the places of the agents to their trails.
-  void AddToTrails(const ShownRow& row);
+  void AddToTrails(std::span<const Motion> motions);
   void ClearTrails();
   /// All markers.
-  visualization_msgs::msg::MarkerArray All(const ShownRow& row, std::uint64_t time_ns) const;
+  visualization_msgs::msg::MarkerArray All(const SceneMoment& now) const;
   /// The edges alone.
-  visualization_msgs::msg::MarkerArray Edges(const ShownRow& row, std::uint64_t time_ns) const;
+  visualization_msgs::msg::MarkerArray Edges(const SceneMoment& now) const;
 
  private:
   const Experiment& experiment_;

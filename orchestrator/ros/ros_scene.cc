@@ -1,4 +1,4 @@
-#include "orchestrator/live/shown/ros_scene.h"
+#include "orchestrator/ros/ros_scene.h"
 
 #include <cmath>
 #include <utility>
@@ -100,20 +100,20 @@ void AddObstacle(const Obstacle& obstacle, std::int32_t id, std::uint64_t time_n
 }
 
 /// One marker for all edges of each state, so that none is left over from an earlier row.
-void AddEdgeMarkers(const Experiment& experiment, const ShownRow& row, std::uint64_t time_ns, Markers& to) {
+void AddEdgeMarkers(const Experiment& experiment, const SceneMoment& now, Markers& to) {
   constexpr std::pair<EdgeNow::State, Colour> kColours[] = {{EdgeNow::State::kHeard, kGreen},
                                                             {EdgeNow::State::kLost, kVermilion},
                                                             {EdgeNow::State::kOutOfRange, kGrey},
                                                             {EdgeNow::State::kNothingYet, kGrey}};
-  const std_msgs::msg::Header header = HeaderOf(time_ns, kWorldFrame);
-  const auto at = [&](int id) { return ToPoint(row.decoded.motions[static_cast<std::size_t>(id - 1)].p_WB); };
+  const std_msgs::msg::Header header = HeaderOf(now.time_ns, kWorldFrame);
+  const auto at = [&](int id) { return ToPoint(now.motions[static_cast<std::size_t>(id - 1)].p_WB); };
   std::int32_t id = 0;
   for (const auto& [state, colour] : kColours) {
     Marker lines = MakeLines("edges", ++id, kLineList, colour, header);
     std::size_t edge = 0;
-    for (int hearer = 1; hearer <= experiment.size() && edge < row.edges.size(); ++hearer)
+    for (int hearer = 1; hearer <= experiment.size() && edge < now.edges.size(); ++hearer)
       for (const Graph::Neighbour& heard : experiment.graph.HeardBy(hearer))
-        if (row.edges[edge++].state == state) {
+        if (now.edges[edge++].state == state) {
           lines.points().push_back(at(hearer));
           lines.points().push_back(at(heard.id));
         }
@@ -131,11 +131,11 @@ std_msgs::msg::Header HeaderOf(std::uint64_t time_ns, const std::string& frame) 
   return header;
 }
 
-tf2_msgs::msg::TFMessage TransformsOf(const ShownRow& row, std::uint64_t time_ns) {
-  const std_msgs::msg::Header header = HeaderOf(time_ns, kWorldFrame);
+tf2_msgs::msg::TFMessage TransformsOf(const SceneMoment& now) {
+  const std_msgs::msg::Header header = HeaderOf(now.time_ns, kWorldFrame);
   tf2_msgs::msg::TFMessage message;
   int id = 0;
-  for (const Motion& motion : row.decoded.motions) {
+  for (const Motion& motion : now.motions) {
     geometry_msgs::msg::TransformStamped transform;
     transform.header(header);
     transform.child_frame_id(AgentName(++id));
@@ -149,9 +149,9 @@ tf2_msgs::msg::TFMessage TransformsOf(const ShownRow& row, std::uint64_t time_ns
   return message;
 }
 
-void RosScene::AddToTrails(const ShownRow& row) {
+void RosScene::AddToTrails(std::span<const Motion> motions) {
   for (std::size_t i = 0; i < trails_.size(); ++i) {
-    trails_[i].push_back(row.decoded.motions[i].p_WB);
+    trails_[i].push_back(motions[i].p_WB);
     if (trails_[i].size() > kTrailPoints) trails_[i].pop_front();
   }
 }
@@ -160,23 +160,23 @@ void RosScene::ClearTrails() {
   for (auto& trail : trails_) trail.clear();
 }
 
-Markers RosScene::Edges(const ShownRow& row, std::uint64_t time_ns) const {
+Markers RosScene::Edges(const SceneMoment& now) const {
   Markers markers;
-  AddEdgeMarkers(experiment_, row, time_ns, markers);
+  AddEdgeMarkers(experiment_, now, markers);
   return markers;
 }
 
-Markers RosScene::All(const ShownRow& row, std::uint64_t time_ns) const {
-  Markers markers = Edges(row, time_ns);
+Markers RosScene::All(const SceneMoment& now) const {
+  Markers markers = Edges(now);
   for (const AgentConfig& agent : experiment_.agents) {
-    AddBody(agent, time_ns, markers);
-    Marker trail = MakeLines("trails", agent.id, kLineStrip, kGrey, HeaderOf(time_ns, kWorldFrame));
+    AddBody(agent, now.time_ns, markers);
+    Marker trail = MakeLines("trails", agent.id, kLineStrip, kGrey, HeaderOf(now.time_ns, kWorldFrame));
     for (const Eigen::Vector3d& p : trails_[static_cast<std::size_t>(agent.id - 1)])
       trail.points().push_back(ToPoint(p));
     markers.markers().push_back(std::move(trail));
   }
   std::int32_t id = 0;
-  for (const Obstacle& obstacle : experiment_.physics.obstacles) AddObstacle(obstacle, ++id, time_ns, markers);
+  for (const Obstacle& obstacle : experiment_.physics.obstacles) AddObstacle(obstacle, ++id, now.time_ns, markers);
   return markers;
 }
 
