@@ -22,8 +22,9 @@ const TypeSchema& SchemaOf(std::string_view name);
 /// The schema of the samples on topics of this kind.
 const TypeSchema& SchemaOf(TopicKind kind);
 
-/// The value of `offered_qos_profiles` in a recording, for a topic that is written reliable, volatile, keep last
-/// `depth`: YAML with the integers of rmw/types.h, which every ROS 2 release reads.
-std::string OfferedQos(int depth);
+/// The value of `offered_qos_profiles` in a recording, for a topic that is written reliable, keep last `depth`,
+/// volatile or, for readers that join later, transient local: YAML with the integers of rmw/types.h, which every ROS 2
+/// release reads.
+std::string OfferedQos(const TopicTraits& topic);
 
 }  // namespace mascot

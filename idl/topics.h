@@ -22,6 +22,7 @@ enum class TopicKind {
   kBundle,
   kCommand,
   kMessage,
+  kOdom,
   kState,
   kClock,
   kEvent,
@@ -65,6 +66,7 @@ struct TopicTraits {
   bool is_large = false;          ///< a sample may need fragments
   bool is_recorded = false;       ///< run.mcap has it
   bool is_for_ros = false;        ///< only tools of ROS 2 read it (network.ros_view)
+  bool is_on_wire = true;         ///< false: only recordings have it
 };
 
 /// The row of a kind in the table of topics.
@@ -88,6 +90,7 @@ struct Topic {
   static Topic State(int agent) { return {TopicKind::kState, agent}; }
   static Topic Command(int agent) { return {TopicKind::kCommand, agent}; }
   static Topic Message(int agent) { return {TopicKind::kMessage, agent}; }
+  static Topic Odom(int agent) { return {TopicKind::kOdom, agent}; }
   static Topic Clock() { return {TopicKind::kClock, 0}; }
   static Topic Event() { return {TopicKind::kEvent, 0}; }
   static Topic Experiment() { return {TopicKind::kExperiment, 0}; }

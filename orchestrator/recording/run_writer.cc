@@ -34,11 +34,11 @@ std::optional<std::uint16_t> RunWriter::AddChannel(const Topic& topic) {
   if (!IsRecorded(experiment_.record.topics, topic)) return std::nullopt;
   const TypeSchema& schema = SchemaOf(topic.kind);
   ++topics_;
-  return mcap_.AddChannel({name,
-                           std::string(schema.name),
-                           std::string(schema.text),
-                           {{"offered_qos_profiles", OfferedQos(topic.traits().writer_depth)},
-                            {"topic_type_hash", std::string(schema.type_hash)}}});
+  return mcap_.AddChannel(
+      {name,
+       std::string(schema.name),
+       std::string(schema.text),
+       {{"offered_qos_profiles", OfferedQos(topic.traits())}, {"topic_type_hash", std::string(schema.type_hash)}}});
 }
 
 void RunWriter::WriteSample(std::optional<std::uint16_t> channel, std::uint64_t time_ns, const Row::Bytes& bytes) {

@@ -35,7 +35,7 @@ TEST(Topic, IsMadeAndParsedAlike) {
   for (const Topic& topic :
        {Topic::State(1), Topic::State(123), Topic::Bundle({4, 4}), Topic::Bundle({1, 50}), Topic::Answers({7, 9}),
         Topic::Row(), Topic::Command(7), Topic::Message(12), Topic::Clock(), Topic::Status(), Topic::Request(),
-        Topic::Experiment(), Topic::Tf(), Topic::Scene()}) {
+        Topic::Experiment(), Topic::Tf(), Topic::Scene(), Topic::Odom(8)}) {
     EXPECT_EQ(Topic::Parse(topic.Name()), topic);
     EXPECT_EQ(Topic::Parse(topic.DdsName()), topic);
   }
@@ -85,6 +85,7 @@ TEST(Wire, TypesHaveTheNamesThatRos2GivesThem) {
   EXPECT_EQ(WireTypeName(TopicKind::kState), "mascot_msgs::msg::dds_::AgentState_");
   EXPECT_EQ(WireTypeName(TopicKind::kClock), "rosgraph_msgs::msg::dds_::Clock_");
   EXPECT_EQ(WireTypeName(TopicKind::kTf), "tf2_msgs::msg::dds_::TFMessage_");
+  EXPECT_EQ(WireTypeName(TopicKind::kOdom), "nav_msgs::msg::dds_::Odometry_");
   EXPECT_EQ(WireTypeName(TopicKind::kScene), "visualization_msgs::msg::dds_::MarkerArray_");
 }
 

@@ -53,6 +53,7 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
     case TopicKind::kStatus:
       return !reads;
     case TopicKind::kRow:
+    case TopicKind::kOdom:
     case TopicKind::kScene:
     case TopicKind::kTf:  // all agents are on them
       return false;
@@ -62,7 +63,8 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
 
 /// Whether a run of this experiment has such a topic.
 bool IsOfTheRun(const Experiment& experiment, const Topic& topic) {
-  return experiment.network.ros_view || !topic.traits().is_for_ros;
+  const TopicTraits& traits = topic.traits();
+  return traits.is_on_wire && (experiment.network.ros_view || !traits.is_for_ros);
 }
 
 /// The name of the process that may write `topic`, as error messages say it.

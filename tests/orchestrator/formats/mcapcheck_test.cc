@@ -37,11 +37,11 @@ Bytes OnTheWire(typename PubSub::type sample) {
 
 std::uint16_t AddChannel(McapWriter& writer, const std::string& topic, std::string_view type) {
   const TypeSchema& schema = SchemaOf(type);
-  return writer.AddChannel(
-      {topic,
-       std::string(schema.name),
-       std::string(schema.text),
-       {{"offered_qos_profiles", OfferedQos(128)}, {"topic_type_hash", std::string(schema.type_hash)}}});
+  return writer.AddChannel({topic,
+                            std::string(schema.name),
+                            std::string(schema.text),
+                            {{"offered_qos_profiles", OfferedQos(TraitsOf(TopicKind::kState))},
+                             {"topic_type_hash", std::string(schema.type_hash)}}});
 }
 
 /// A sample in which all numbers differ, so that swapped fields are noticed.
@@ -235,6 +235,8 @@ TEST(Schemas, NameEachBitOfTheFlagsOfACommand) {
 TEST(Schemas, TypeHashesAreThoseThatRosPublishes) {
   EXPECT_EQ(SchemaOf("rosgraph_msgs/msg/Clock").type_hash,
             "RIHS01_692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564");
+  EXPECT_EQ(SchemaOf("nav_msgs/msg/Odometry").type_hash,
+            "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0");
   // A type with nested types, which is not the type of any of our topics.
   const Ran ran = Shell("/usr/bin/python3 " MASCOT_SOURCE_DIR "/scripts/type_hash.py " MASCOT_SOURCE_DIR
                         "/idl/ros_interfaces -- geometry_msgs/msg/Twist");

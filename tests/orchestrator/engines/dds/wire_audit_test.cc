@@ -107,6 +107,7 @@ TEST_F(WireAuditTest, WithAViewForRosStrangersMayReadItAndAgentsMayNot) {
     audit.OnEndpoint(guid, topic.DdsName(), reads);
     return audit.Violation();
   };
+  EXPECT_EQ(violation_of(200, Topic::Odom(1), /*reads=*/false), "") << "only recordings have it";
   for (const Topic& topic : {Topic::Tf(), Topic::Scene()}) {
     EXPECT_EQ(violation_of(99, topic, /*reads=*/false), "") << "by a second participant";
     EXPECT_EQ(violation_of(200, topic, /*reads=*/true), "");
