@@ -153,6 +153,7 @@ struct Experiment {
   struct {
     std::string file;
     std::vector<std::string> topics;
+    int rate_hz = 0;  ///< rows per simulated second; 0: every tick has one
   } record;
   struct {
     bool position_plot = true;
@@ -187,6 +188,8 @@ struct Experiment {
   double period_s() const { return 1.0 / control.rate_hz; }
   /// Simulated time of tick k: divided, never accumulated.
   double time_s(std::int64_t tick) const { return static_cast<double>(tick) / control.rate_hz; }
+  /// From one row of the recording to the next.
+  int ticks_per_row() const { return record.rate_hz == 0 ? 1 : control.rate_hz / record.rate_hz; }
   int steps_per_tick() const { return physics.rate_hz / control.rate_hz; }
 };
 

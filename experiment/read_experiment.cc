@@ -51,6 +51,10 @@ constexpr Key kRunKeys[] = {
 constexpr Key kRecordKeys[] = {
     key::Text("file", "name of the recording in the run's folder, ending in .mcap").Default("\"run.mcap\""),
     key::Texts("topics", "topics that the recording holds; shell patterns").Default("[\"*\"]"),
+    key::Integer("rate_hz", 0, 100000,
+                 "rows per simulated second in the recording and in states.npz, and the row of the last tick; divides "
+                 "`control.rate_hz`; 0: every tick has a row")
+        .Default("0"),
 };
 
 constexpr Key kOutputKeys[] = {
@@ -179,7 +183,7 @@ void CheckTime(Section& run, Section& physics, Section& control, const Experimen
              "expected a whole number of periods of control.rate_hz (" + std::to_string(rate_hz) + ")" + got);
 }
 
-void ReadRecord(Section& section, Experiment& experiment) {
+void ReadRecord(Section& section, Section& control, Experiment& experiment) {
   auto& record = experiment.record;
   record.file = section.Text("file");
   const bool plain = record.file.find('/') == std::string::npos && record.file.find('\0') == std::string::npos;
@@ -189,6 +193,11 @@ void ReadRecord(Section& section, Experiment& experiment) {
   if (record.topics.size() > kMaxPatterns)
     section.Fail("topics", "expected at most " + std::to_string(kMaxPatterns) + " patterns, got " +
                                std::to_string(record.topics.size()));
+  record.rate_hz = static_cast<int>(section.Integer("rate_hz"));
+  const int ticks_hz = experiment.control.rate_hz;
+  if (record.rate_hz != 0 && !section.Wrong("rate_hz") && !control.Wrong("rate_hz") && ticks_hz % record.rate_hz != 0)
+    section.Fail("rate_hz", "expected a divisor of control.rate_hz (" + std::to_string(ticks_hz) +
+                                "), or 0 for every tick, got " + std::to_string(record.rate_hz));
   section.Done();
 }
 
@@ -261,7 +270,7 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   graph.Done();
   experiment.graph = experiment.schedule.Union();
   experiment.links = ReadLinks(link, experiment.graph);
-  ReadRecord(record, experiment);
+  ReadRecord(record, control, experiment);
   ReadOutput(output, experiment);
   ReadNetwork(network, experiment);
 

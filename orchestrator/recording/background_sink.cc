@@ -18,28 +18,9 @@ std::size_t RowsKept(const Experiment& experiment) {
 
 }  // namespace
 
-/// A row that was kept, for the sink.
-class BackgroundSink::AsFlown final : public FlownRow {
- public:
-  AsFlown(const Kept& row, RowEncoder& encoder) : row_(row), encoder_(encoder) {}
-  std::int64_t tick() const override { return row_.tick; }
-  const DecodedRow& decoded() const override { return row_.decoded; }
-  const Row& bytes() const override {
-    if (row_.is_received) return row_.received;
-    if (encoded_ == nullptr) encoded_ = &encoder_.Encode(row_.tick, row_.decoded);
-    return *encoded_;
-  }
-  const Row* received() const override { return row_.is_received ? &row_.received : nullptr; }
-
- private:
-  const Kept& row_;
-  RowEncoder& encoder_;
-  mutable const Row* encoded_ = nullptr;
-};
-
 BackgroundSink::BackgroundSink(const Experiment& experiment, RowSink& sink)
     : sink_(sink), encoder_(experiment), batch_(RowsKept(experiment) / kBatches) {
-  for (std::size_t k = 0; k < RowsKept(experiment); ++k) rows_.push_back(std::make_unique<Kept>(experiment.size()));
+  for (std::size_t k = 0; k < RowsKept(experiment); ++k) rows_.push_back(std::make_unique<KeptRow>(experiment.size()));
   thread_ = std::thread([this] { Run(); });
 }
 
@@ -58,15 +39,12 @@ void BackgroundSink::Add(const FlownRow& row) {
   if (failure_) std::rethrow_exception(failure_);
   const Row* const received = row.received();
   if (received != nullptr && !has_room_for_received_) {  // the first row: all get the room that it takes
-    for (const std::unique_ptr<Kept>& each : rows_) each->received = *received;
+    for (const std::unique_ptr<KeptRow>& each : rows_) each->received = *received;
     has_room_for_received_ = true;
   }
-  Kept& kept = *rows_[(first_ + count_) % rows_.size()];
+  KeptRow& kept = *rows_[(first_ + count_) % rows_.size()];
   lock.unlock();  // the thread does not look at this one yet
-  kept.tick = row.tick();
-  kept.decoded = row.decoded();
-  kept.is_received = received != nullptr;
-  if (received != nullptr) kept.received = *received;
+  kept.Keep(row);
   lock.lock();
   if (++count_ >= batch_) added_.notify_one();
 }
@@ -91,7 +69,8 @@ void BackgroundSink::Run() {
     std::exception_ptr failure;
     try {
       for (std::size_t k = 0; k < taken; ++k)
-        sink_.Add(AsFlown(*rows_[(first_ + k) % rows_.size()], encoder_));  // first_ is changed by this thread alone
+        sink_.Add(
+            KeptAsFlown(*rows_[(first_ + k) % rows_.size()], encoder_));  // first_ is changed by this thread alone
     } catch (...) {
       failure = std::current_exception();
     }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/recording/kept_row.h"
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/team/row_sink.h"
 
@@ -30,16 +31,6 @@ class BackgroundSink final : public RowSink {
   void Finish();
 
  private:
-  /// A row that is kept: what came over the wire, or what is to be encoded.
-  struct Kept {
-    explicit Kept(int agents) : decoded(agents), received(agents) {}
-    std::int64_t tick = 0;
-    DecodedRow decoded;
-    bool is_received = false;
-    Row received;
-  };
-  class AsFlown;
-
   void Run();
 
   RowSink& sink_;
@@ -48,8 +39,8 @@ class BackgroundSink final : public RowSink {
 
   std::mutex mutex_;
   std::condition_variable added_, taken_;
-  std::vector<std::unique_ptr<Kept>> rows_;  // a ring
-  std::size_t first_ = 0, count_ = 0;        // of rows_, those that the sink does not have yet
+  std::vector<std::unique_ptr<KeptRow>> rows_;  // a ring
+  std::size_t first_ = 0, count_ = 0;           // of rows_, those that the sink does not have yet
   bool has_room_for_received_ = false;
   bool is_finishing_ = false, is_ending_ = false;
   std::exception_ptr failure_;

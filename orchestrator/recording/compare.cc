@@ -20,23 +20,31 @@ std::string Described(const McapReader& reader, const McapContents::Message& mes
 
 }  // namespace
 
-Comparison::Comparison(const std::string& recording, const RecordingPlan& plan) : reader_(recording), plan_(plan) {
+Comparison::Comparison(const std::string& recording, const RecordingPlan& plan, const RecordedTicks& ticks)
+    : reader_(recording), plan_(plan), recorded_(ticks) {
   for (const Topic& topic : plan_.topics) names_.push_back(topic.Name());
 }
 
 void Comparison::Add(const FlownRow& row) {
   bool first = true;
+  const bool has_row = recorded_.Has(row.tick());
+  if (!has_row && row.decoded().events.empty()) {
+    if (!over_) ++ticks_;
+    return;
+  }
   const Row& bytes = row.bytes();
   for (std::size_t index = 0; index < plan_.topics.size(); ++index) {
     const Topic& topic = plan_.topics[index];
     if (topic.kind == TopicKind::kEvent) {
       for (const Row::Bytes& event : bytes.events) AddSample(index, row.tick(), events_++, event, first);
-    } else {
-      AddSample(index, row.tick(), row.tick(), SampleOf(bytes, topic), first);
+    } else if (has_row) {
+      AddSample(index, row.tick(), rows_, SampleOf(bytes, topic), first);
     }
     first = false;
   }
-  if (!over_) ++ticks_;
+  if (over_) return;
+  ++ticks_;
+  rows_ += has_row;
 }
 
 void Comparison::AddSample(std::size_t index, std::int64_t tick, std::int64_t sequence, const Row::Bytes& flown,

@@ -13,8 +13,8 @@ namespace mascot {
 /// number, time and bytes. Holds one tick and one message at a time. For recordings in lockstep.
 class Comparison final : public RowSink {
  public:
-  /// `plan` is that of the recording (PlanOf).
-  Comparison(const std::string& recording, const RecordingPlan& plan);
+  /// `plan` is that of the recording (PlanOf), `ticks` are those of which it has rows (TicksIn).
+  Comparison(const std::string& recording, const RecordingPlan& plan, const RecordedTicks& ticks);
 
   /// Compares the next tick. Throws std::runtime_error at the first difference, which ends the run. Ticks after the end
   /// of the recording are not compared.
@@ -26,8 +26,10 @@ class Comparison final : public RowSink {
   const std::string& difference() const { return difference_; }
   /// Number of messages that are equal.
   std::uint64_t messages() const { return messages_; }
-  /// Number of whole ticks that are equal, from tick 0 on.
+  /// Number of whole ticks that are equal, from tick 0 on; of those without a row, their events are.
   std::int64_t ticks() const { return ticks_; }
+  /// Number of whole rows that are equal.
+  std::int64_t rows() const { return rows_; }
 
  private:
   /// Compares the topic's sample number `sequence`, from 0 on.
@@ -38,11 +40,12 @@ class Comparison final : public RowSink {
 
   McapReader reader_;
   const RecordingPlan plan_;
+  const RecordedTicks recorded_;
   std::vector<std::string> names_;  // of its topics
   bool over_ = false;               // the recording has ended, or differs
   std::string difference_;
   std::uint64_t messages_ = 0;
-  std::int64_t ticks_ = 0;
+  std::int64_t ticks_ = 0, rows_ = 0;
   std::int64_t events_ = 0;
 };
 

@@ -15,8 +15,8 @@
 namespace mascot {
 namespace {
 
-/// Whether a topic of this kind has a sample of every tick.
-bool IsPerTick(const Topic& topic, bool realtime) {
+/// Whether a topic of this kind has a sample in every row.
+bool IsPerRow(const Topic& topic, bool realtime) {
   const TopicRhythm rhythm = topic.traits().rhythm;
   return rhythm == TopicRhythm::kTick || (rhythm == TopicRhythm::kAnswer && !realtime);
 }
@@ -95,7 +95,7 @@ std::string TopicGap(const RecordingPlan& plan, const Counts& counts, bool ended
   for (const Topic& topic : plan.topics) {
     const std::string name = topic.Name();
     const std::uint64_t count = counts.at(name);
-    const bool may_miss_ticks = !plan.HasEveryTick(topic);
+    const bool may_miss_ticks = !plan.IsInEveryRow(topic);
     const bool may_be_empty = topic.kind == TopicKind::kEvent || (may_miss_ticks && ended_early);
     if (count == 0 && most->second > 0 && !may_be_empty) return name + " is missing, which the experiment records";
     if (count < most->second && !may_miss_ticks)
@@ -114,35 +114,44 @@ std::string EndGap(const McapContents& contents, const RecordingPlan& plan, std:
                      early ? ", at which the run says it ended early" : ": the run does not say that it ended early");
 }
 
+/// The tick that is next to this time; the last one of the plan for times beyond.
+std::int64_t TickAt(std::uint64_t time_ns, const RecordingPlan& plan) {
+  constexpr std::uint64_t kSecond = 1'000'000'000;
+  const auto rate = static_cast<std::uint64_t>(plan.rate_hz);
+  const std::uint64_t rest = time_ns % kSecond;
+  return static_cast<std::int64_t>(
+      std::min(time_ns / kSecond * rate + (rest * rate + kSecond / 2) / kSecond, plan.ticks - 1));
+}
+
+/// The number of ticks up to the end of so many rows. Rows beyond the last tick count as a tick each.
+std::uint64_t TicksUpTo(std::uint64_t rows, const RecordedTicks& ticks) {
+  const std::uint64_t within = std::min(rows, static_cast<std::uint64_t>(ticks.rows()));
+  if (within == 0) return rows;
+  return static_cast<std::uint64_t>(ticks.TickOf(static_cast<std::int64_t>(within) - 1)) + 1 + (rows - within);
+}
+
 /// Checks the times of one topic, message by message: tick k is at k / rate.
 class Times {
  public:
-  Times(const Topic& topic, const RecordingPlan& plan)
-      : name_(topic.Name()), plan_(plan), dense_(plan.HasEveryTick(topic)) {}
+  Times(const Topic& topic, const RecordingPlan& plan, const RecordedTicks& ticks)
+      : name_(topic.Name()), plan_(plan), ticks_(ticks), dense_(plan.IsInEveryRow(topic)) {}
 
   /// What is wrong with the time of the topic's next message. Empty: nothing.
   std::string Take(std::uint64_t time_ns) {
-    const std::uint64_t tick = dense_ ? next_ : std::max(next_, TickAt(time_ns));
-    const std::uint64_t expected_ns = StampNs(static_cast<std::int64_t>(tick), plan_.rate_hz);
-    next_ = tick + 1;
-    if (time_ns == expected_ns && tick < plan_.ticks) return "";
+    const std::int64_t row = dense_ ? next_ : std::max(next_, ticks_.RowAt(TickAt(time_ns, plan_)));
+    const std::uint64_t expected_ns = StampNs(ticks_.TickOf(row), plan_.rate_hz);
+    next_ = row + 1;
+    if (time_ns == expected_ns && row < ticks_.rows()) return "";
     return fmt::format("{} has a message of t = {:.9g} s, expected {:.9g} s", name_,
                        1e-9 * static_cast<double>(time_ns), 1e-9 * static_cast<double>(expected_ns));
   }
 
  private:
-  /// The tick that is next to this time; the last one for times beyond.
-  std::uint64_t TickAt(std::uint64_t time_ns) const {
-    constexpr std::uint64_t kSecond = 1'000'000'000;
-    const auto rate = static_cast<std::uint64_t>(plan_.rate_hz);
-    const std::uint64_t rest = time_ns % kSecond;
-    return std::min(time_ns / kSecond * rate + (rest * rate + kSecond / 2) / kSecond, plan_.ticks - 1);
-  }
-
   std::string name_;
   const RecordingPlan& plan_;
-  bool dense_;              // a message for each tick; else (real time) for some, in order
-  std::uint64_t next_ = 0;  // the first tick that may come next
+  const RecordedTicks& ticks_;
+  bool dense_;             // a message in each row; else (real time) in some, in order
+  std::int64_t next_ = 0;  // the first row that may come next
 };
 
 /// Checks the events: each has its number and the time of its tick, and there are as many as the states say.
@@ -181,12 +190,13 @@ class EventsCheck {
 /// nothing.
 std::string MessageGap(const std::string& path, const McapContents& contents, const RecordingPlan& plan) try {
   const auto topics = TopicsByName(plan);
+  const RecordedTicks ticks = TicksIn(contents, plan);
   std::map<std::uint16_t, Times> times;
   std::map<std::uint16_t, TopicKind> kinds;
   for (const auto& [id, channel] : contents.channels)
     if (const auto topic = topics.find(channel.topic); topic != topics.end()) {
       kinds[id] = topic->second.kind;
-      if (topic->second.kind != TopicKind::kEvent) times.try_emplace(id, topic->second, plan);
+      if (topic->second.kind != TopicKind::kEvent) times.try_emplace(id, topic->second, plan, ticks);
     }
   const bool has_both = std::ranges::any_of(plan.topics, [](const Topic& t) { return t.kind == TopicKind::kEvent; }) &&
                         std::ranges::any_of(plan.topics, [](const Topic& t) { return t.kind == TopicKind::kState; });
@@ -227,7 +237,7 @@ std::string WhyIncomplete(const std::string& path, const McapContents& contents,
 
 }  // namespace
 
-bool RecordingPlan::HasEveryTick(const Topic& topic) const { return IsPerTick(topic, realtime); }
+bool RecordingPlan::IsInEveryRow(const Topic& topic) const { return IsPerRow(topic, realtime); }
 
 std::string TooNew(const McapContents& contents) {
   const std::string* format = MetadataEntry(contents, kMetadata, kFormatKey);
@@ -247,6 +257,24 @@ std::optional<std::uint64_t> TicksOfEarlyEnd(const McapContents& contents) {
   return ticks == nullptr ? std::nullopt : NumberFrom<std::uint64_t>(*ticks);
 }
 
+std::uint64_t TicksBegun(const McapContents& contents, const RecordingPlan& plan) {
+  std::optional<std::uint64_t> last_ns;
+  for (const auto& [id, channel] : contents.channels)
+    if (channel.messages > 0) last_ns = std::max(last_ns.value_or(0), channel.last_time);
+  return last_ns ? static_cast<std::uint64_t>(TickAt(*last_ns, plan)) + 1 : 0;
+}
+
+RecordedTicks TicksIn(const McapContents& contents, const RecordingPlan& plan) {
+  const auto planned = static_cast<std::int64_t>(std::min(TicksOfEarlyEnd(contents).value_or(plan.ticks), plan.ticks));
+  if (LossOf(contents).empty()) return {planned, plan.ticks_per_row};
+  std::uint64_t last_ns = 0;  // of rows, not of events, which have ticks of their own
+  for (const auto& [id, channel] : contents.channels)
+    if (const auto topic = Topic::Parse(channel.topic); topic && topic->kind != TopicKind::kEvent)
+      last_ns = std::max(last_ns, channel.last_time);
+  const std::int64_t last = TickAt(last_ns, plan);
+  return {last % plan.ticks_per_row == 0 ? planned : last + 1, plan.ticks_per_row};
+}
+
 RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
   if (const std::string why = TooNew(contents); !why.empty()) throw ConfigError({path + ": " + why});
   const auto attached = contents.attachments.find(kConfigFile);
@@ -264,8 +292,11 @@ RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
   plan.agents = static_cast<int>(config.Child("agents").Integer("count"));
   plan.rate_hz = static_cast<int>(config.Child("control").Integer("rate_hz"));
   plan.ticks = static_cast<std::uint64_t>(std::llround(run.Number("duration_s") * plan.rate_hz)) + 1;
-  const std::vector<std::string> patterns = config.Child("record").Texts("topics");
-  config.ThrowIfWrong();  // before `agents` is used as a size
+  Section record = config.Child("record");
+  const std::vector<std::string> patterns = record.Texts("topics");
+  const auto rows_hz = static_cast<int>(record.Integer("rate_hz"));
+  config.ThrowIfWrong();  // before `agents` is used as a size, and rates to divide by
+  plan.ticks_per_row = rows_hz == 0 ? 1 : std::max(plan.rate_hz / rows_hz, 1);
   plan.topics = TopicsOf(patterns, SendersOf(config, contents, static_cast<std::size_t>(plan.agents)));
   config.ThrowIfWrong();
   return plan;
@@ -280,11 +311,12 @@ std::string Proof::End(std::optional<std::uint64_t> planned_ticks) const {
 
 Proof Prove(const McapContents& contents, const RecordingPlan& plan) {
   const Counts counts = CountMessages(contents, plan);
-  Proof proof{.gap = SequenceGap(contents), .ticks = {}};
+  Proof proof{.gap = SequenceGap(contents), .rows = {}, .ticks = {}};
   if (proof.gap.empty() && LossOf(contents).empty())
     proof.gap = TopicGap(plan, counts, TicksOfEarlyEnd(contents).has_value());
   for (const Topic& topic : plan.topics)
-    if (plan.HasEveryTick(topic)) proof.ticks = std::min(proof.ticks.value_or(UINT64_MAX), counts.at(topic.Name()));
+    if (plan.IsInEveryRow(topic)) proof.rows = std::min(proof.rows.value_or(UINT64_MAX), counts.at(topic.Name()));
+  if (proof.rows) proof.ticks = TicksUpTo(*proof.rows, TicksIn(contents, plan));
   return proof;
 }
 

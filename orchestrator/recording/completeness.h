@@ -7,6 +7,7 @@
 
 #include "idl/topics.h"
 #include "orchestrator/formats/mcap/reader.h"
+#include "orchestrator/recording/recorded_ticks.h"
 
 namespace mascot {
 
@@ -16,12 +17,13 @@ struct RecordingPlan {
   int agents = 0;
   int rate_hz = 0;
   bool realtime = false;
-  std::uint64_t ticks = 0;    ///< rows of a complete run
-  std::vector<Topic> topics;  ///< the per-tick topics that record.topics selects
+  std::uint64_t ticks = 0;    ///< ticks of a complete run
+  int ticks_per_row = 1;      ///< from one row to the next (record.rate_hz)
+  std::vector<Topic> topics;  ///< the recorded topics that record.topics selects
 
-  /// Whether the topic has a sample of every tick. In real time, agents may miss ticks: their last command is held, and
+  /// Whether the topic has a sample in every row. In real time, agents may miss ticks: their last command is held, and
   /// commands and messages may be fewer.
-  bool HasEveryTick(const Topic& topic) const;
+  bool IsInEveryRow(const Topic& topic) const;
 };
 
 /// The metadata of a recording that says which version of the format it is.
@@ -52,14 +54,22 @@ inline constexpr const char* kEarlyEnd = "mascot_ended_early";
 inline constexpr const char* kTicksKey = "ticks";
 /// How many ticks a run that ended early says it has recorded; nothing if it does not say that it ended early.
 std::optional<std::uint64_t> TicksOfEarlyEnd(const McapContents& contents);
+/// Number of ticks up to the last of which the recording has a message; at most those of the plan. Its times must be
+/// known (ReadMcap).
+std::uint64_t TicksBegun(const McapContents& contents, const RecordingPlan& plan);
+/// The ticks of which the recording has rows, up to the end of its run; of a recording with losses, up to the
+/// end of the plan, unless it has the last row of a run that ended early.
+RecordedTicks TicksIn(const McapContents& contents, const RecordingPlan& plan);
 
 /// Result of checking a recording by its sequence numbers and counts: each channel counts 0 .. n-1, where n is the
-/// number of ticks for every topic with a sample of every tick.
+/// number of rows for every topic with a sample in every row.
 struct Proof {
   /// Description of the first gap: something is missing that should be there even if the file was not closed, or the
   /// run ended early. Empty: none.
   std::string gap;
-  /// Number of complete ticks, from 0 on; nothing if the plan has no topic with a sample of every tick.
+  /// Number of complete rows; nothing if the plan has no topic with a sample in every row.
+  std::optional<std::uint64_t> rows;
+  /// Number of ticks up to the last complete row.
   std::optional<std::uint64_t> ticks;
   /// Where the whole ticks end: "whole up to tick 812 of 4000", "no tick is whole". Empty without `ticks`.
   std::string End(std::optional<std::uint64_t> planned_ticks) const;

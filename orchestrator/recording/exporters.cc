@@ -34,12 +34,12 @@ void ForEachStateRow(const Recording& recording, const std::function<void(std::i
 }
 
 void WriteNpz(const Recording& recording, const std::string& path) {
-  StatesNpz npz(path, recording.agents(), recording.ticks(), recording.has_commands());
+  StatesNpz npz(path, recording.agents(), recording.ticks().rows(), recording.has_commands());
   ForEachStateRow(recording, [&](std::int64_t, const StateRow& row) { npz.Append(row); });
   npz.Close();
 }
 
-/// Writes the long ("tidy") form: a line per tick and agent.
+/// Writes the long ("tidy") form: a line per row and agent.
 void WriteCsv(const Recording& recording, const std::string& path) {
   std::vector<std::string> columns = {"t", "id"};
   std::vector<std::size_t> arrays;
@@ -68,36 +68,39 @@ void WriteCsv(const Recording& recording, const std::string& path) {
   csv.Close();
 }
 
-/// One array in column-major order, as MATLAB wants it. The first index (ticks) runs fastest, so that the whole array
+/// One array in column-major order, as MATLAB wants it. The first index (rows) runs fastest, so that the whole array
 /// must be in memory.
 struct Transposed {
   std::size_t array;                    // index into kStateArrays
-  std::vector<std::size_t> dimensions;  // T x N x components, T x N, or T x 1
+  std::vector<std::size_t> dimensions;  // rows x N x components, rows x N, or rows x 1
   std::vector<double> values;
 
-  Transposed(std::size_t a, std::size_t ticks, std::size_t agents) : array(a), dimensions{ticks, 1} {
+  Transposed(std::size_t a, std::size_t rows, std::size_t agents) : array(a), dimensions{rows, 1} {
     const StateArray& of = kStateArrays[a];
     if (!of.components.empty()) dimensions[1] = agents;
     if (of.components.size() > 1) dimensions.push_back(of.components.size());
     MatWriter::RequireFits(std::string(of.name), dimensions);
-    values.resize(ticks * of.row_values(agents));
+    values.resize(rows * of.row_values(agents));
   }
-  void Take(std::size_t tick, const StateRow& row) {
+  void Take(std::size_t k, const StateRow& row) {
     const std::span<const double> in = row.Values(array);
-    const std::size_t ticks = dimensions[0], agents = dimensions[1], width = in.size() / agents;
+    const std::size_t rows = dimensions[0], agents = dimensions[1], width = in.size() / agents;
     for (std::size_t i = 0; i < agents; ++i)
-      for (std::size_t c = 0; c < width; ++c) values[tick + ticks * (i + agents * c)] = in[i * width + c];
+      for (std::size_t c = 0; c < width; ++c) values[k + rows * (i + agents * c)] = in[i * width + c];
   }
 };
 
 /// Writes a MATLAB file. Needs as much memory as the file has bytes.
 void WriteMat(const Recording& recording, const std::string& path) {
-  const auto ticks = static_cast<std::size_t>(recording.ticks()), agents = static_cast<std::size_t>(recording.agents());
+  const auto rows = static_cast<std::size_t>(recording.ticks().rows()),
+             agents = static_cast<std::size_t>(recording.agents());
   std::vector<Transposed> arrays;
   for (std::size_t a = 0; a < kStateArrays.size(); ++a)
-    if (IsExported(kStateArrays[a], recording)) arrays.emplace_back(a, ticks, agents);
-  ForEachStateRow(recording, [&](std::int64_t tick, const StateRow& row) {
-    for (Transposed& array : arrays) array.Take(static_cast<std::size_t>(tick), row);
+    if (IsExported(kStateArrays[a], recording)) arrays.emplace_back(a, rows, agents);
+  std::size_t k = 0;
+  ForEachStateRow(recording, [&](std::int64_t, const StateRow& row) {
+    for (Transposed& array : arrays) array.Take(k, row);
+    ++k;
   });
   MatWriter mat(path);
   mat.AddText("experiment", recording.name());

@@ -33,8 +33,6 @@ IndexedRows::IndexedRows(const std::string& run)
       rows_(RowsIn(contents_, path_)),
       row_(rows_.plan.agents),
       before_(rows_.plan.agents) {
-  // The index counts messages, of which a damaged one may claim any number.
-  rows_.ticks = std::min(rows_.ticks, static_cast<std::int64_t>(rows_.plan.ticks));
   for (const auto& [id, channel] : contents_.channels)
     if (const auto topic = Topic::Parse(channel.topic); topic && BelongsToRows(*topic, rows_.plan.agents))
       topics_[id] = *topic;
@@ -93,7 +91,8 @@ void IndexedRows::Require(const Row::Bytes& sample, const Topic& topic) const {
     throw std::runtime_error(path_ + ": tick " + std::to_string(row_.tick) + " has no " + topic.Name());
 }
 
-void IndexedRows::Read(std::int64_t tick, DecodedRow& row) {
+void IndexedRows::Read(std::int64_t at, DecodedRow& row) {
+  const std::int64_t tick = ticks().TickOf(ticks().RowAt(at));
   Collect(tick, row_);
   if (has_commands() && rows_.plan.realtime) HoldCommands(tick);
   for (std::size_t i = 0; i < row_.states.size(); ++i) {
@@ -121,7 +120,7 @@ std::vector<IndexedRows::EventAt> IndexedRows::Events() {
         mascot_msgs::msg::Event event;
         Deserialize(sample.data, event);
         const auto tick = static_cast<std::int64_t>(event.tick());
-        if (tick < ticks()) events.push_back({tick, static_cast<int>(event.number()), event.toml()});
+        if (tick <= ticks().last()) events.push_back({tick, static_cast<int>(event.number()), event.toml()});
       }
     }
   }

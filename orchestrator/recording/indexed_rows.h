@@ -27,13 +27,14 @@ class IndexedRows {
   const std::string& name() const { return rows_.plan.name; }
   int agents() const { return rows_.plan.agents; }
   bool has_commands() const { return rows_.has_commands; }
-  /// Number of complete ticks: 0 to ticks() - 1.
-  std::int64_t ticks() const { return rows_.ticks; }
+  /// The ticks of which it has complete rows.
+  const RecordedTicks& ticks() const { return rows_.ticks; }
   /// Why later ticks may be missing (LossOf); empty: the recording was closed properly.
   std::string loss() const { return LossOf(contents_); }
 
-  /// Reads the row of `tick`, a complete one. A command that is missing in real time is the newest one of the second
-  /// before; 0 if there is none. Throws std::runtime_error if a sample is missing or damaged.
+  /// Reads the row of `tick`, or the newest before it (record.rate_hz); `tick` is at most the last of ticks(). A
+  /// command that is missing in real time is the newest one of the second before; 0 if there is none. Throws
+  /// std::runtime_error if a sample is missing or damaged.
   void Read(std::int64_t tick, DecodedRow& row);
 
   struct EventAt {
@@ -41,7 +42,8 @@ class IndexedRows {
     int number = 0;
     std::string toml;  ///< Event::Toml()
   };
-  /// All events of the complete ticks, in order; none if record.topics left them out. Reads the chunks that hold one.
+  /// All events up to the last complete row, in order; none if record.topics left them out. Reads the chunks that hold
+  /// one.
   std::vector<EventAt> Events();
 
   /// How much of the file was read so far (McapIndex::bytes_read).

@@ -110,7 +110,7 @@ McapContents ReadRecording(const std::string& path) try {
 }
 
 RowsOf RowsIn(const McapContents& contents, const std::string& path) {
-  RowsOf rows{.plan = PlanOf(contents, path)};
+  RowsOf rows{.plan = PlanOf(contents, path), .ticks = {0, 1}};
   std::erase_if(rows.plan.topics, [](const Topic& topic) {
     return topic.kind != TopicKind::kState && topic.kind != TopicKind::kCommand;
   });
@@ -125,9 +125,11 @@ RowsOf RowsIn(const McapContents& contents, const std::string& path) {
   }
   const Proof proof = Prove(contents, rows.plan);
   if (!proof.gap.empty()) throw std::runtime_error(path + ": " + proof.gap);
-  rows.ticks = static_cast<std::int64_t>(std::min<std::uint64_t>(proof.ticks.value_or(0), INT64_MAX));
+  // A damaged index may claim any number of messages.
+  const std::uint64_t ticks = std::min(proof.ticks.value_or(0), rows.plan.ticks);
+  rows.ticks = RecordedTicks(static_cast<std::int64_t>(ticks), rows.plan.ticks_per_row);
   const std::string loss = LossOf(contents);
-  if (rows.ticks == 0) throw std::runtime_error(path + ": holds no whole tick" + (loss.empty() ? "" : ": " + loss));
+  if (ticks == 0) throw std::runtime_error(path + ": holds no whole tick" + (loss.empty() ? "" : ": " + loss));
   return rows;
 }
 

@@ -41,7 +41,7 @@ McapContents ReadRecording(const std::string& path);
 struct RowsOf {
   RecordingPlan plan = {};    ///< with the topics of states and commands only
   bool has_commands = false;  ///< whether every agent's commands were recorded
-  std::int64_t ticks = 0;     ///< number of complete ticks, from 0 on
+  RecordedTicks ticks;        ///< those of the complete rows
 };
 /// Throws ConfigError if it is not the recording of a run, and std::runtime_error if it has gaps, no complete tick, or
 /// not the states of all agents. `path` names it in messages.
@@ -62,12 +62,14 @@ class Recording {
   double time_s(std::int64_t tick) const { return static_cast<double>(tick) / rows_.plan.rate_hz; }
   /// Whether every agent's commands were recorded.
   bool has_commands() const { return rows_.has_commands; }
-  /// Number of complete ticks: 0 to ticks() - 1.
-  std::int64_t ticks() const { return rows_.ticks; }
+  /// The ticks of which it has complete rows.
+  const RecordedTicks& ticks() const { return rows_.ticks; }
+  /// Whether some ticks have no row (record.rate_hz).
+  bool is_sparse() const { return rows_.plan.ticks_per_row > 1; }
   /// Why later ticks may be missing (LossOf); empty if the recording was closed properly.
   std::string loss() const { return LossOf(contents_); }
 
-  /// Passes every complete tick to `on_row`, in order. Rows have no clock and no messages, and commands only if
+  /// Passes every complete row to `on_row`, in order. Rows have no clock and no messages, and commands only if
   /// has_commands(). Throws std::runtime_error if a sample is missing.
   void ForEachRow(const std::function<void(const Row&)>& on_row) const;
 

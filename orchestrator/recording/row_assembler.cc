@@ -9,7 +9,7 @@ namespace mascot {
 
 RowAssembler::RowAssembler(const Wanted& wanted, std::function<void(const Row&)> on_row)
     : wanted_(wanted), on_row_(std::move(on_row)), row_(wanted.agents) {
-  Begin(0);
+  Begin();
 }
 
 void RowAssembler::AddChannel(std::uint16_t id, const Topic& topic) { places_[id] = &SampleOf(row_, topic); }
@@ -28,9 +28,9 @@ void RowAssembler::Finish() {
   if (!IsDone()) Fail("tick " + std::to_string(row_.tick) + " is missing");
 }
 
-void RowAssembler::Begin(std::int64_t tick) {
-  row_.tick = tick;
-  time_ns_ = StampNs(tick, wanted_.rate_hz);
+void RowAssembler::Begin() {
+  row_.tick = wanted_.ticks.TickOf(next_);
+  time_ns_ = StampNs(row_.tick, wanted_.rate_hz);
   for (Row::Bytes& state : row_.states) state.clear();
   for (Row::Bytes& command : row_.commands) command.clear();
 }
@@ -44,7 +44,8 @@ void RowAssembler::HandOver() {
     if (wanted_.every_command) require(row_.commands[static_cast<std::size_t>(id - 1)], Topic::Command(id));
   }
   on_row_(row_);
-  Begin(row_.tick + 1);
+  ++next_;
+  Begin();
 }
 
 }  // namespace mascot

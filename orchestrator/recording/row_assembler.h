@@ -8,6 +8,7 @@
 
 #include "idl/topics.h"
 #include "orchestrator/formats/mcap/reader.h"
+#include "orchestrator/recording/recorded_ticks.h"
 #include "orchestrator/team/row.h"
 
 namespace mascot {
@@ -18,9 +19,9 @@ class RowAssembler {
   struct Wanted {
     std::string file;  ///< name of the recording, for error messages
     int agents = 0;
-    int rate_hz = 0;             ///< ticks per simulated second
-    std::int64_t ticks = 0;      ///< number of rows to assemble; later samples are ignored
-    bool every_command = false;  ///< whether a row must have every agent's command
+    int rate_hz = 0;               ///< ticks per simulated second
+    RecordedTicks ticks = {0, 1};  ///< those of the rows to assemble; later samples are ignored
+    bool every_command = false;    ///< whether a row must have every agent's command
   };
   RowAssembler(const Wanted& wanted, std::function<void(const Row&)> on_row);
   RowAssembler(const RowAssembler&) = delete;
@@ -36,13 +37,14 @@ class RowAssembler {
 
  private:
   [[noreturn]] void Fail(const std::string& what) const { throw std::runtime_error(wanted_.file + ": " + what); }
-  bool IsDone() const { return row_.tick == wanted_.ticks; }
-  void Begin(std::int64_t tick);
+  bool IsDone() const { return next_ == wanted_.ticks.rows(); }
+  void Begin();
   void HandOver();
 
   Wanted wanted_;
   std::function<void(const Row&)> on_row_;
   Row row_;
+  std::int64_t next_ = 0;                        // the number of row_
   std::uint64_t time_ns_ = 0;                    // log time of row_
   std::map<std::uint16_t, Row::Bytes*> places_;  // where samples go in row_, by channel
 };

@@ -26,7 +26,9 @@ RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, cons
   clock_ = AddChannel(Topic::Clock());
   event_ = AddChannel(Topic::Event());
   if (experiment.output.save_data || experiment.output.wants_pictures())  // which are made of it
-    npz_.emplace(folder.File("states.npz"), experiment.size(), experiment.ticks() + 1);
+    npz_.emplace(folder.File("states.npz"), experiment.size(),
+                 RecordedTicks(experiment.ticks() + 1, experiment.ticks_per_row()).rows());
+  if (experiment.ticks_per_row() > 1) kept_.emplace(experiment);
 }
 
 std::optional<std::uint16_t> RunWriter::AddChannel(const Topic& topic) {
@@ -46,6 +48,20 @@ void RunWriter::WriteSample(std::optional<std::uint16_t> channel, std::uint64_t 
 }
 
 void RunWriter::Add(const FlownRow& row) {
+  if (kept_ && kept_->has_row && !kept_->row.decoded.events.empty()) {  // a row that is left out: it was not the last
+    WriteEvents(KeptAsFlown(kept_->row, kept_->encoder));
+    mcap_.EndTick();
+  }
+  ++ticks_;
+  const bool is_kept = row.tick() % experiment_.ticks_per_row() != 0;
+  if (kept_) kept_->has_row = is_kept;
+  if (is_kept)
+    kept_->row.Keep(row);
+  else
+    WriteRow(row);
+}
+
+void RunWriter::WriteRow(const FlownRow& row) {
   const Row& bytes = row.bytes();
   const std::uint64_t time_ns = StampNs(row.tick(), experiment_.control.rate_hz);
   for (std::size_t i = 0; i < bytes.states.size(); ++i) {
@@ -54,7 +70,7 @@ void RunWriter::Add(const FlownRow& row) {
     WriteSample(states_[i], time_ns, bytes.states[i]);
   }
   WriteSample(clock_, time_ns, bytes.clock);
-  for (const Row::Bytes& event : bytes.events) WriteSample(event_, time_ns, event);
+  WriteEvents(row);
   mcap_.EndTick();
   if (npz_) {
     arrays_.Set(experiment_.time_s(row.tick()), row.decoded());
@@ -63,8 +79,14 @@ void RunWriter::Add(const FlownRow& row) {
   ++rows_;
 }
 
+void RunWriter::WriteEvents(const FlownRow& row) {
+  const std::uint64_t time_ns = StampNs(row.tick(), experiment_.control.rate_hz);
+  for (const Row::Bytes& event : row.bytes().events) WriteSample(event_, time_ns, event);
+}
+
 void RunWriter::Close(const std::string& config) {
-  if (rows_ <= experiment_.ticks()) mcap_.Metadata(kEarlyEnd, {{kTicksKey, std::to_string(rows_)}});
+  if (kept_ && kept_->has_row) WriteRow(KeptAsFlown(kept_->row, kept_->encoder));
+  if (ticks_ <= experiment_.ticks()) mcap_.Metadata(kEarlyEnd, {{kTicksKey, std::to_string(ticks_)}});
   mcap_.Attach(kConfigFile, kToml, config);
   mcap_.Close();
   if (npz_) npz_->Close();

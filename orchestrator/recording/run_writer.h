@@ -8,6 +8,7 @@
 #include "experiment/experiment.h"
 #include "idl/topics.h"
 #include "orchestrator/formats/mcap/writer.h"
+#include "orchestrator/recording/kept_row.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/state_arrays.h"
 #include "orchestrator/recording/states_npz.h"
@@ -15,8 +16,9 @@
 
 namespace mascot {
 
-/// Writes the rows of a run to the recording (run.mcap) and states.npz. Both engines use it, so that equal rows give
-/// byte-identical files. Failures throw std::runtime_error.
+/// Writes the rows of a run to the recording (run.mcap) and states.npz: of every tick, or as record.rate_hz says, with
+/// the last one and all events. Both engines use it, so that equal rows give byte-identical files. Failures throw
+/// std::runtime_error.
 class RunWriter final : public RowSink {
  public:
   /// `without_events` is the resolved experiment as TOML, without events. It is attached to the recording before the
@@ -28,13 +30,16 @@ class RunWriter final : public RowSink {
   /// states.npz. `config`: the resolved experiment as TOML, with all events that it has or was given, to be attached.
   void Close(const std::string& config);
 
-  std::int64_t rows() const { return rows_; }
+  std::int64_t ticks() const { return ticks_; }  ///< that were added
+  std::int64_t rows() const { return rows_; }    ///< that were written
   std::uint64_t samples() const { return mcap_.messages(); }
   std::size_t topics() const { return topics_; }
 
  private:
   /// Adds the channel of a topic to the recording; nothing if record.topics does not select it.
   std::optional<std::uint16_t> AddChannel(const Topic& topic);
+  void WriteRow(const FlownRow& row);
+  void WriteEvents(const FlownRow& row);
   void WriteSample(std::optional<std::uint16_t> channel, std::uint64_t time_ns, const Row::Bytes& bytes);
 
   const Experiment& experiment_;
@@ -43,8 +48,16 @@ class RunWriter final : public RowSink {
   std::vector<std::optional<std::uint16_t>> commands_, messages_, states_;  // channels by id - 1
   std::optional<std::uint16_t> clock_, event_;
   std::size_t topics_ = 0;
-  std::int64_t rows_ = 0;
+  std::int64_t ticks_ = 0, rows_ = 0;
   StateRow arrays_;
+  /// The newest row, if record.rate_hz leaves it out: unless another one follows, it is the last, and is written.
+  struct Kept {
+    explicit Kept(const Experiment& experiment) : row(experiment.size()), encoder(experiment) {}
+    bool has_row = false;
+    KeptRow row;
+    RowEncoder encoder;
+  };
+  std::optional<Kept> kept_;  // only with record.rate_hz
 };
 
 }  // namespace mascot

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "orchestrator/recording/recorded_ticks.h"
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/report/aim_report.h"
 #include "orchestrator/report/incident_report.h"
@@ -132,8 +133,9 @@ std::string SummaryText(const RunFigures& run, const Incidents& incidents) {
   const double sim_s = figures.Known("sim_s"), wall_s = figures.Known("wall_s");
   std::string text;
   text += Line("simulated      {:.2f} s in {:.2f} s: {:.1f} x real time", sim_s, wall_s, sim_s / wall_s);
-  text += Line("recorded       {} rows, {} samples on {} topics, {} lost", run.rows(),
-               figures.Count("samples.recorded"), figures.Count("samples.topics"), figures.Count("samples.lost"));
+  text += Line("recorded       {} rows, {} samples on {} topics, {} lost",
+               RecordedTicks(run.rows(), experiment.ticks_per_row()).rows(), figures.Count("samples.recorded"),
+               figures.Count("samples.topics"), figures.Count("samples.lost"));
   for (const PhaseFigures& phase : run.phases()) text += PhaseText(run, phase);
   text += Line("saturated      {:.3g} % of commands{}", 100 * figures.Known("control.saturated_fraction"),
                AlsoLimited(figures));

@@ -11,6 +11,7 @@
 #include "experiment/processes.h"
 #include "experiment/toml/input.h"
 #include "orchestrator/engines/dds/delivery.h"
+#include "orchestrator/recording/recorded_ticks.h"
 #include "orchestrator/recording/state_arrays.h"
 #include "orchestrator/report/json.h"
 #include "orchestrator/report/law_report.h"
@@ -75,9 +76,8 @@ Json PhasesJson(const Experiment& experiment, const Prediction& prediction) {
   return phases;
 }
 
-/// About how large the large files of a run will be (bytes). What an agent and a tick take in the recording,
-/// compressed, was measured on the experiments in configs: 170 to 220 bytes for bodies with an airframe, 85 to 105 for
-/// others.
+/// About how large the large files of a run will be (bytes). What an agent and a row take in the recording, compressed,
+/// was measured on the experiments in configs: 170 to 220 bytes for bodies with an airframe, 85 to 105 for others.
 struct FilesToCome {
   std::uint64_t states_npz = 0, recording = 0;
   std::uint64_t all() const { return states_npz + recording; }
@@ -85,7 +85,8 @@ struct FilesToCome {
 
 FilesToCome FilesOf(const Experiment& experiment) {
   constexpr std::uint64_t kOfAirframe = 200, kOfOthers = 100;
-  const auto rows = static_cast<std::uint64_t>(experiment.ticks() + 1);
+  const auto rows =
+      static_cast<std::uint64_t>(RecordedTicks(experiment.ticks() + 1, experiment.ticks_per_row()).rows());
   FilesToCome files;
   if (experiment.output.save_data)
     for (const StateArray& array : kStateArrays)
@@ -143,12 +144,12 @@ std::string SeedText(const Experiment& experiment) {
 std::string FilesText(const FilesToCome& files) {
   constexpr std::uint64_t kLarge = 100'000'000;
   if (files.all() == 0) return "none of the states (output.save_data, record.topics)";
+  const bool both = files.states_npz > 0 && files.recording > 0;
   std::string text = "about " + SizeText(files.all());
-  if (files.states_npz > 0 && files.recording > 0)
-    text += ": recording " + SizeText(files.recording) + ", states.npz " + SizeText(files.states_npz);
-  if (files.all() >= kLarge && files.states_npz > 0 && files.recording > 0)
-    text += "; output.save_data = false leaves out the latter, which `export` makes of the recording";
-  return text;
+  if (both) text += ": recording " + SizeText(files.recording) + ", states.npz " + SizeText(files.states_npz);
+  if (files.all() < kLarge) return text;
+  if (both) text += "; output.save_data = false leaves out the latter, which `export` makes of the recording";
+  return text + "; record.rate_hz makes " + (both ? "both" : "it") + " smaller";
 }
 
 /// The corners of the box in which the agents start, in W.

@@ -30,7 +30,8 @@ int Export(const ExportArgs& args) {
   if (!recording.has_commands())
     std::cerr << "warning: " << recording.path()
               << ": record.topics left out commands; exported without acceleration_command, actuator, flags\n";
-  std::cout << target << ": " << recording.ticks() << " ticks, " << recording.agents() << " agents" << std::endl;
+  std::cout << target << ": " << recording.ticks().rows() << (recording.is_sparse() ? " rows, " : " ticks, ")
+            << recording.agents() << " agents" << std::endl;
   return recording.loss().empty() ? kExitDone : kExitIncomplete;
 }
 

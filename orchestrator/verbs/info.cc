@@ -28,6 +28,11 @@ struct Findings {
   Verdict verdict;
 
   bool complete() const { return verdict.reason.empty(); }
+  /// The rows of a complete recording.
+  std::optional<std::int64_t> rows() const {
+    if (!verdict.ticks) return std::nullopt;
+    return RecordedTicks(static_cast<std::int64_t>(*verdict.ticks), verdict.plan->ticks_per_row).rows();
+  }
   std::optional<std::uint64_t> planned_ticks() const {
     return verdict.plan ? std::optional(verdict.plan->ticks) : std::nullopt;
   }
@@ -92,6 +97,7 @@ Json ToJson(const Findings& findings) {
           {"attachments", attachments},
           {"metadata", contents.metadata},
           {"ticks", OrNull(findings.verdict.ticks)},
+          {"rows", OrNull(findings.rows())},
           {"planned_ticks", OrNull(findings.planned_ticks())},
           {"complete", findings.complete()},
           {"reason", findings.verdict.reason}};
@@ -132,8 +138,10 @@ void PrintText(const Findings& findings) {
   }
   if (const auto ticks = findings.verdict.ticks) {
     const std::uint64_t planned = findings.verdict.plan->ticks;
-    print("ticks:", fmt::format("{}{}, recorded without a gap", *ticks,
-                                *ticks < planned ? fmt::format(" of {}: the run ended early", planned) : ""));
+    const bool is_sparse = findings.verdict.plan->ticks_per_row > 1;
+    print("ticks:", fmt::format("{}{}{}, recorded without a gap", *ticks,
+                                *ticks < planned ? fmt::format(" of {}: the run ended early", planned) : "",
+                                is_sparse ? fmt::format(", of which {} have a row", *findings.rows()) : ""));
   }
   std::cout << "complete: " << (findings.complete() ? "yes" : "no (" + PlainLine(findings.verdict.reason) + ")")
             << "\n";

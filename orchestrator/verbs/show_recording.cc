@@ -38,7 +38,7 @@ int ShowRecording(const std::string& run, const Showing& showing, const std::str
     console.Line("warning: " + recorded.rows().path() + ": " + recorded.rows().loss() + "; it plays up to there");
   const Prediction prediction = Predict(recorded.experiment());
   before_the_view.reset();
-  Playback playback(recorded.experiment().control.rate_hz, recorded.last_tick());
+  Playback playback(recorded.experiment().control.rate_hz, recorded.rows().ticks());
   const LiveView::Options options{.address = showing.at.address,
                                   .port = showing.at.port,
                                   .allowed_origins = showing.allowed_origins,
@@ -58,7 +58,8 @@ int ShowRecording(const std::string& run, const Showing& showing, const std::str
   std::optional<MetricCurves> metric_curves;
   std::optional<MetricReader> metric_reader;
   if (showing.metrics != nullptr) {
-    metric_curves.emplace(recorded.experiment(), *showing.metrics, recorded.last_tick(), MetricCurves::Rows::kAllAtOnce,
+    metric_curves.emplace(recorded.experiment(), *showing.metrics, recorded.rows().ticks().rows() - 1,
+                          MetricCurves::Rows::kAllAtOnce,
                           [&view](std::string message) { view->SetMetrics(std::move(message)); });
     metric_reader.emplace(run, *metric_curves, log);
   }

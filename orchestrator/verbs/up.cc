@@ -206,7 +206,7 @@ int Up(UpArgs& args) {
       prediction = Predict(flown);
     }
     writes.Finish();
-    const std::int64_t ticks = writer.rows() - 1;  // row 0 is the start
+    const std::int64_t ticks = writer.ticks() - 1;  // row 0 is the start
     if (ExitCode(result) != 1 && ticks > 0 && ticks < experiment.ticks())
       folder.Write("config.toml", StoppedAfter(flown, ticks));
     writer.Close(WithoutDelivery(flown));

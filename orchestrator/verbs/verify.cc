@@ -59,7 +59,7 @@ struct Subject {
   std::string file;
   McapContents contents;
   RecordingPlan plan;
-  std::uint64_t ticks = 0;  ///< ticks of which it has samples
+  std::uint64_t ticks = 0;  ///< ticks up to the last of which it has samples
 
   const std::string& config() const { return contents.attachments.at(kConfigFile); }
 };
@@ -73,8 +73,7 @@ Subject SubjectOf(const std::string& run) {
   if (subject.plan.realtime)
     throw ConfigError({subject.file + ": expected run.mode = \"lockstep\", got \"realtime\": such a run depends on the "
                                       "wall clock, and never repeats bit for bit"});
-  for (const auto& [id, channel] : subject.contents.channels) subject.ticks = std::max(subject.ticks, channel.messages);
-  subject.ticks = std::min(subject.ticks, subject.plan.ticks);
+  subject.ticks = TicksBegun(subject.contents, subject.plan);
   if (subject.ticks == 0) {
     const std::string loss = LossOf(subject.contents);
     const char* reason = TicksOfEarlyEnd(subject.contents) == std::uint64_t{0} ? "the run ended before its first tick"
@@ -146,11 +145,12 @@ void PrintChanges(const Subject& subject, const Experiment& experiment) {
   }
 }
 
-/// "813 of 4001 ticks, 7317 messages"
+/// "813 of 4001 ticks, 7317 messages"; "4001 ticks, of which 401 have a row, 3609 messages"
 std::string Extent(const Subject& subject, const Comparison& comparison) {
   const auto ticks = static_cast<std::uint64_t>(comparison.ticks());
-  return fmt::format("{}{} ticks, {} messages", ticks,
+  return fmt::format("{}{} ticks, {}{} messages", ticks,
                      ticks < subject.plan.ticks ? fmt::format(" of {}", subject.plan.ticks) : "",
+                     subject.plan.ticks_per_row > 1 ? fmt::format("of which {} have a row, ", comparison.rows()) : "",
                      comparison.messages());
 }
 
@@ -211,7 +211,7 @@ int Verify(const VerifyArgs& args) {
   const TemporaryFolder temporary;
   const RunFolder folder(temporary.path(), experiment, /*force=*/false);
   Console console(/*quiet=*/true);
-  Comparison comparison(subject.file, subject.plan);
+  Comparison comparison(subject.file, subject.plan, TicksIn(subject.contents, subject.plan));
   const std::vector<RowSink*> sinks{&comparison};
   Crew crew = args.engine.MakeCrew(experiment, /*others=*/0);
   Flight flight(args.engine.name, experiment, folder, sinks, nullptr, console, stop, crew);

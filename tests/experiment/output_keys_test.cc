@@ -49,6 +49,21 @@ TEST(OutputKey, RecordTopicsChooses) {
   EXPECT_TRUE(fs::exists(run.up.path() / "states.npz"));  // not affected by record.topics
 }
 
+TEST(OutputKey, RecordRateHzLeavesOutRows) {
+  ScratchFolder folder;
+  const Flown all(folder, "all", "leaderless", {"run.duration_s=0.25"});
+  const Flown some(folder, "some", "leaderless", {"run.duration_s=0.25", "record.rate_hz=10"});
+  const auto clocks = [](const Flown& run) {
+    std::uint64_t messages = 0;
+    for (const auto& [id, channel] : ReadMcap(run.up.path() / "run.mcap").channels)
+      if (channel.topic == "/clock") messages = channel.messages;
+    return messages;
+  };
+  EXPECT_EQ(clocks(all), 26u);
+  EXPECT_EQ(clocks(some), 4u);  // at 0, 0.1, 0.2 and 0.25 s
+  EXPECT_LT(fs::file_size(some.up.path() / "states.npz"), fs::file_size(all.up.path() / "states.npz") / 3);
+}
+
 TEST(OutputKey, OutputSaveDataKeepsOrDropsTheArrays) {
   ScratchFolder folder;
   const Flown run(folder, "run", "leaderless", {"run.duration_s=0.1", "output.save_data=false"});

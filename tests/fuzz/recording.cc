@@ -57,7 +57,8 @@ void ReadSomeRows(const std::string& path) {
   IndexedRows rows(path);
   DecodedRow decoded(rows.agents());
   rows.Events();
-  for (const std::int64_t tick : {rows.ticks() - 1, std::int64_t{0}, rows.ticks() / 2}) rows.Read(tick, decoded);
+  for (const std::int64_t tick : {rows.ticks().last(), std::int64_t{0}, rows.ticks().last() / 2})
+    rows.Read(tick, decoded);
 }
 
 void ReadRows(const std::string& path) {

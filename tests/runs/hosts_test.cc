@@ -132,7 +132,7 @@ struct Difference {
 Difference FirstDifference(const std::string& a, const std::string& b) {
   IndexedRows rows_a(a), rows_b(b);
   DecodedRow row_a(rows_a.agents()), row_b(rows_b.agents());
-  for (std::int64_t tick = 0; tick < std::min(rows_a.ticks(), rows_b.ticks()); ++tick) {
+  for (std::int64_t tick = 0; tick < std::min(rows_a.ticks().rows(), rows_b.ticks().rows()); ++tick) {
     rows_a.Read(tick, row_a);
     rows_b.Read(tick, row_b);
     Difference difference{.tick = tick};

@@ -18,9 +18,9 @@ bool MayHaveCurve(const Experiment& experiment) {
 
 }  // namespace
 
-CurveHistory::CurveHistory(const Experiment& experiment, std::int64_t last_tick, Source source)
+CurveHistory::CurveHistory(const Experiment& experiment, const RecordedTicks& ticks, Source source)
     : experiment_(experiment),
-      last_tick_(last_tick),
+      ticks_(ticks),
       source_(std::move(source)),
       has_curve_(MayHaveCurve(experiment)),
       row_(experiment.size()),
@@ -28,7 +28,7 @@ CurveHistory::CurveHistory(const Experiment& experiment, std::int64_t last_tick,
 
 void CurveHistory::Follow(int rows) {
   for (; rows > 0 && !is_whole(); --rows) {
-    const std::int64_t tick = std::exchange(next_, last_tick_ + 1);  // which it stays if reading fails
+    const std::int64_t tick = std::exchange(next_, ticks_.last() + 1);  // which it stays if reading fails
     source_.read(tick, row_);
     if (tick >= changes_at_) TakeChanges(tick);
     if (has_curve_) meters_.Add(tick, row_);
@@ -36,9 +36,17 @@ void CurveHistory::Follow(int rows) {
       const auto of_law = has_curve_ ? meters_.CurveOf(EntryOf(now_->law)) : std::nullopt;
       curves_.Add(tick, DisagreementOf(*now_, row_.motions), of_law, row_.motions);
     }
-    const std::int64_t step = has_curve_ ? 1 : curves_.every();
-    next_ = (tick / step + 1) * step;
+    next_ = After(tick);
   }
+}
+
+/// The next tick whose row is needed: any that there is, or one that gives a point of the curves.
+std::int64_t CurveHistory::After(std::int64_t tick) const {
+  if (has_curve_) return ticks_.TickAfter(tick);
+  const std::int64_t step = curves_.every();
+  std::int64_t next = (tick / step + 1) * step;
+  while (next <= ticks_.last() && !ticks_.Has(next)) next += step;
+  return next;
 }
 
 void CurveHistory::TakeChanges(std::int64_t tick) {

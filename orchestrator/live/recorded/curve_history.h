@@ -7,6 +7,7 @@
 #include "experiment/experiment.h"
 #include "orchestrator/live/shown/curves.h"
 #include "orchestrator/measuring/law_meters.h"
+#include "orchestrator/recording/recorded_ticks.h"
 
 namespace mascot {
 
@@ -22,19 +23,21 @@ class CurveHistory {
     /// The first tick after this one at which events change the experiment; INT64_MAX: none.
     std::function<std::int64_t(std::int64_t tick)> next_change;
   };
-  /// `experiment`, which must outlive this object: as it was at the start. `last_tick`: of the recording.
-  CurveHistory(const Experiment& experiment, std::int64_t last_tick, Source source);
+  /// `experiment`, which must outlive this object: as it was at the start. `ticks`: those of which the recording has
+  /// rows.
+  CurveHistory(const Experiment& experiment, const RecordedTicks& ticks, Source source);
 
   /// Goes on by at most this many rows. Throws what reading throws; the curves then end there.
   void Follow(int rows);
-  bool is_whole() const { return next_ > last_tick_; }
+  bool is_whole() const { return next_ > ticks_.last(); }
   const Curves& curves() const { return curves_; }
 
  private:
   void TakeChanges(std::int64_t tick);
+  std::int64_t After(std::int64_t tick) const;
 
   const Experiment& experiment_;
-  std::int64_t last_tick_;
+  RecordedTicks ticks_;
   Source source_;
   bool has_curve_;                         // a law of some phase has one
   std::shared_ptr<const Experiment> now_;  // null before the first row

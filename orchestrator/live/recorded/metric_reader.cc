@@ -14,9 +14,10 @@ MetricReader::MetricReader(const std::string& run, MetricCurves& curves, std::fu
 void MetricReader::Run(const std::stop_token& over) {
   DecodedRow row(rows_.agents());
   try {
-    for (std::int64_t tick = 0; tick < rows_.ticks() && !over.stop_requested(); ++tick) {
-      rows_.Read(tick, row);
-      curves_.Add(tick, row);
+    const RecordedTicks& ticks = rows_.ticks();
+    for (std::int64_t k = 0; k < ticks.rows() && !over.stop_requested(); ++k) {
+      rows_.Read(ticks.TickOf(k), row);
+      curves_.Add(ticks.TickOf(k), row);
     }
   } catch (const std::exception& error) {
     log_(std::string("warning: ") + error.what() + ": curves of metrics end there");

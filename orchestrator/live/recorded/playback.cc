@@ -28,7 +28,7 @@ Answer Playback::Grant(const Request& request) {
     case Request::Kind::kStep:
       if (!std::isfinite(request.number)) return {false, "step: expected a number of ticks"};
       plays_ = false;
-      return GoTo(std::floor(tick_) + std::round(request.number));
+      return Step(std::round(request.number));
     case Request::Kind::kSeek:
       if (!std::isfinite(request.number)) return {false, "seek: expected a time in seconds"};
       return GoTo(std::round(request.number * rate_hz_));
@@ -54,6 +54,14 @@ void Playback::Advance() {
   if (tick_ < static_cast<double>(last_tick_)) return;
   tick_ = static_cast<double>(last_tick_);
   plays_ = false;
+}
+
+/// Goes on by so many rows, or back.
+Answer Playback::Step(double rows) {
+  const double row = static_cast<double>(ticks_.RowAt(static_cast<std::int64_t>(tick_))) + rows;
+  const double last = static_cast<double>(ticks_.rows() - 1);
+  if (row > last) return GoTo(static_cast<double>(last_tick_) + row - last);
+  return GoTo(static_cast<double>(ticks_.TickOf(static_cast<std::int64_t>(std::max(row, 0.0)))));
 }
 
 Answer Playback::GoTo(double tick) {

@@ -8,6 +8,7 @@
 #include <stop_token>
 
 #include "orchestrator/control/run_control.h"
+#include "orchestrator/recording/recorded_ticks.h"
 
 namespace mascot {
 
@@ -25,9 +26,9 @@ class Playback final : public RunControl {
     bool operator==(const PlaybackState&) const = default;
   };
 
-  /// `clock` returns the present time.
-  Playback(int rate_hz, std::int64_t last_tick, std::function<WallClock::time_point()> clock = WallClock::now)
-      : rate_hz_(rate_hz), last_tick_(last_tick), clock_(std::move(clock)), since_(clock_()) {}
+  /// `ticks`: those of which the recording has rows, which a step goes to. `clock` returns the present time.
+  Playback(int rate_hz, const RecordedTicks& ticks, std::function<WallClock::time_point()> clock = WallClock::now)
+      : rate_hz_(rate_hz), ticks_(ticks), last_tick_(ticks.last()), clock_(std::move(clock)), since_(clock_()) {}
 
   Answer Ask(const Request& request) override;
   PlaybackState Now();
@@ -37,10 +38,12 @@ class Playback final : public RunControl {
  private:
   Answer Grant(const Request& request);
   void Advance();
+  Answer Step(double rows);
   Answer GoTo(double tick);
   std::string Where() const;
 
   const int rate_hz_;
+  const RecordedTicks ticks_;
   const std::int64_t last_tick_;
   const std::function<WallClock::time_point()> clock_;
 

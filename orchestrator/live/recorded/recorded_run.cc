@@ -28,7 +28,7 @@ RecordedRun::RecordedRun(const std::string& run)
                     return count > EventsUpTo(tick - 1) ? StateAfter(count) : nullptr;
                   },
               .next_change = [this](std::int64_t tick) { return NextChange(tick); }}),
-      curves_(experiment_, last_tick(),
+      curves_(experiment_, rows_.ticks(),
               {.read = [this](std::int64_t tick, DecodedRow& row) { rows_.Read(tick, row); },
                .at = [this](std::int64_t tick) { return At(tick); },
                .next_change = [this](std::int64_t tick) { return NextChange(tick); }}) {}
@@ -86,8 +86,8 @@ std::vector<ShownKey> RecordedRun::KeysAt(std::int64_t tick) {
 void RecordedRun::Show(std::int64_t tick, ShownRow& row) {
   row.edges.clear();
   rows_.Read(tick, row.decoded);
-  row.tick = tick;
-  row.disagreement_m = DisagreementOf(*At(tick), row.decoded.motions);
+  row.tick = rows_.ticks().TickOf(rows_.ticks().RowAt(tick));
+  row.disagreement_m = DisagreementOf(*At(row.tick), row.decoded.motions);
 }
 
 bool RecordedRun::FollowEdges(ShownRow& row, int rows) {

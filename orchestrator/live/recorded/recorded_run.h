@@ -27,7 +27,7 @@ class RecordedRun {
   /// The experiment at the start.
   const Experiment& experiment() const { return experiment_; }
   const IndexedRows& rows() const { return rows_; }
-  std::int64_t last_tick() const { return rows_.ticks() - 1; }
+  std::int64_t last_tick() const { return rows_.ticks().last(); }
   RecordedPart part() const;
   /// All events. The events.csv beside the recording says which of them were given by hand. The recording does not say
   /// it: it is the same, byte for byte, when the run is flown again from its config.toml.
@@ -39,7 +39,8 @@ class RecordedRun {
   std::shared_ptr<const Experiment> At(std::int64_t tick);
   /// The live keys with their values at `tick`. Throws as At() does.
   std::vector<ShownKey> KeysAt(std::int64_t tick);
-  /// The row of `tick` as viewers see it, without its edges. Throws std::runtime_error if the file is damaged there.
+  /// The row of `tick`, or the newest before it, as viewers see it, without its edges. Throws std::runtime_error if the
+  /// file is damaged there.
   void Show(std::int64_t tick, ShownRow& row);
   /// Goes on to compute the edges of the row that Show() returned, by at most this many rows of the recording. Returns
   /// whether row.edges are known now, or never will be because there are more than kMaxEdgesShown. Throws as Show()

@@ -173,10 +173,10 @@ TEST(Completeness, TopicsThatTheExperimentDoesNotRecordAreNotMissed) {
 TEST(Completeness, InRealTimeOnlyCommandsAndMessagesMayBeFewer) {
   RecordingPlan plan;
   plan.realtime = true;
-  EXPECT_TRUE(plan.HasEveryTick(Topic::State(1)));
-  EXPECT_TRUE(plan.HasEveryTick(Topic::Clock()));
-  EXPECT_FALSE(plan.HasEveryTick(Topic::Command(1)));
-  EXPECT_FALSE(plan.HasEveryTick(Topic::Message(1)));
+  EXPECT_TRUE(plan.IsInEveryRow(Topic::State(1)));
+  EXPECT_TRUE(plan.IsInEveryRow(Topic::Clock()));
+  EXPECT_FALSE(plan.IsInEveryRow(Topic::Command(1)));
+  EXPECT_FALSE(plan.IsInEveryRow(Topic::Message(1)));
 }
 
 Verdict JudgementOf(const std::string& path) { return Judge(path, ReadMcap(path)); }

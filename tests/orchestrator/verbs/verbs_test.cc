@@ -106,7 +106,11 @@ TEST_F(Verbs, CheckSaysWhatKeepsFilesSmall) {
   EXPECT_EQ(
       files({"run.duration_s=4000"}),
       "  files          about 589 MB: recording 320 MB, states.npz 269 MB; output.save_data = false leaves out the "
-      "latter, which `export` makes of the recording");
+      "latter, which `export` makes of the recording; record.rate_hz makes both smaller");
+  EXPECT_EQ(files({"run.duration_s=4000", "output.save_data=false"}),
+            "  files          about 320 MB; record.rate_hz makes it smaller");
+  EXPECT_EQ(files({"run.duration_s=4000", "record.rate_hz=10"}),
+            "  files          about 59 MB: recording 32 MB, states.npz 27 MB");
 }
 
 TEST_F(Verbs, CheckTakesTheOptionsOfARun) {

@@ -32,7 +32,7 @@ class PlaybackOfTenSeconds : public testing::Test {
   bool Plays() { return playback_.Now().plays; }
 
   Playback::WallClock::time_point now_{};
-  Playback playback_{100, 1000, [this] { return now_; }};
+  Playback playback_{100, {1001, 1}, [this] { return now_; }};
 };
 
 TEST_F(PlaybackOfTenSeconds, StandsAtItsStartUntilItIsToPlay) {
@@ -44,6 +44,19 @@ TEST_F(PlaybackOfTenSeconds, StandsAtItsStartUntilItIsToPlay) {
   EXPECT_EQ(Ask(Kind::kPause).words, "paused at tick 50 (0.5 s)");
   Pass(5);
   EXPECT_EQ(Tick(), 50);
+}
+
+TEST(Playback, StepsFromRowToRow) {
+  Playback playback(100, {106, 10});
+  const auto step = [&](double rows) { return playback.Ask({.kind = Kind::kStep, .number = rows}).words; };
+  EXPECT_EQ(step(1), "at tick 10 (0.1 s)");
+  EXPECT_EQ(step(9), "at tick 100 (1 s)");
+  EXPECT_EQ(step(1), "at tick 105 (1.05 s)");
+  EXPECT_EQ(step(1), "at tick 105 (1.05 s), where the recording ends");
+  EXPECT_EQ(step(-1), "at tick 100 (1 s)");
+  playback.Ask({.kind = Kind::kSeek, .number = 0.57});
+  EXPECT_EQ(step(1), "at tick 60 (0.6 s)");
+  EXPECT_EQ(step(-100), "at tick 0 (0 s)");
 }
 
 TEST_F(PlaybackOfTenSeconds, KeepsItsPlaceWhenTheSpeedChanges) {
@@ -300,7 +313,7 @@ TEST(Projector, PausesWhereTheFileIsDamagedAndShowsWhatFollowsWithoutEdges) {
   };
   RecordedRun run(flown.path());
   const Prediction prediction;
-  Playback playback(100, run.last_tick());
+  Playback playback(100, run.rows().ticks());
   LiveView view(run.experiment(), prediction, playback, {.port = 0, .page = {}, .source = {.recorded = run.part()}},
                 log);
   test::Viewer viewer(view.url());
