@@ -153,7 +153,8 @@ struct Experiment {
   struct {
     std::string file;
     std::vector<std::string> topics;
-    int rate_hz = 0;  ///< rows per simulated second; 0: every tick has one
+    bool ros_types = false;  ///< the recording also has channels in standard types of ROS 2
+    int rate_hz = 0;         ///< rows per simulated second; 0: every tick has one
   } record;
   struct {
     bool position_plot = true;

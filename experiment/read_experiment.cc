@@ -51,6 +51,10 @@ constexpr Key kRunKeys[] = {
 constexpr Key kRecordKeys[] = {
     key::Text("file", "name of the recording in the run's folder, ending in .mcap").Default("\"run.mcap\""),
     key::Texts("topics", "topics that the recording holds; shell patterns").Default("[\"*\"]"),
+    key::Boolean("ros_types",
+                 "adds channels in standard types of ROS 2, made of the rows: `/tf`, `/scene`, `/agent_<id>/odom`; "
+                 "`topics` selects among them, too")
+        .Default("false"),
     key::Integer("rate_hz", 0, 100000,
                  "rows per simulated second in the recording and in states.npz, and the row of the last tick; divides "
                  "`control.rate_hz`; 0: every tick has a row")
@@ -193,6 +197,7 @@ void ReadRecord(Section& section, Section& control, Experiment& experiment) {
   if (record.topics.size() > kMaxPatterns)
     section.Fail("topics", "expected at most " + std::to_string(kMaxPatterns) + " patterns, got " +
                                std::to_string(record.topics.size()));
+  record.ros_types = section.Boolean("ros_types");
   record.rate_hz = static_cast<int>(section.Integer("rate_hz"));
   const int ticks_hz = experiment.control.rate_hz;
   if (record.rate_hz != 0 && !section.Wrong("rate_hz") && !control.Wrong("rate_hz") && ticks_hz % record.rate_hz != 0)

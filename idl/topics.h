@@ -64,8 +64,8 @@ struct TopicTraits {
   int reader_depth;               ///< samples that a reader keeps
   bool for_late_joiners = false;  ///< a reader that joins later receives the last sample, too
   bool is_large = false;          ///< a sample may need fragments
-  bool is_recorded = false;       ///< run.mcap has it
-  bool is_for_ros = false;        ///< only tools of ROS 2 read it (network.ros_view)
+  bool is_recorded = false;       ///< run.mcap has it, as it was sent
+  bool is_for_ros = false;        ///< only tools of ROS 2 read it (network.ros_view, record.ros_types)
   bool is_on_wire = true;         ///< false: only recordings have it
 };
 

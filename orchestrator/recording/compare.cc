@@ -20,9 +20,11 @@ std::string Described(const McapReader& reader, const McapContents::Message& mes
 
 }  // namespace
 
-Comparison::Comparison(const std::string& recording, const RecordingPlan& plan, const RecordedTicks& ticks)
+Comparison::Comparison(const std::string& recording, const RecordingPlan& plan, const RecordedTicks& ticks,
+                       const Experiment& experiment)
     : reader_(recording), plan_(plan), recorded_(ticks) {
   for (const Topic& topic : plan_.topics) names_.push_back(topic.Name());
+  if (plan_.ros_types) ros_ = std::make_unique<RosRows>(experiment);
 }
 
 void Comparison::Add(const FlownRow& row) {
@@ -33,12 +35,16 @@ void Comparison::Add(const FlownRow& row) {
     return;
   }
   const Row& bytes = row.bytes();
+  if (ros_ && has_row) ros_->SetRow(row);
   for (std::size_t index = 0; index < plan_.topics.size(); ++index) {
     const Topic& topic = plan_.topics[index];
     if (topic.kind == TopicKind::kEvent) {
       for (const Row::Bytes& event : bytes.events) AddSample(index, row.tick(), events_++, event, first);
+    } else if (has_row && topic.kind == TopicKind::kScene) {
+      if (const Row::Bytes& scene = ros_->Message(topic); !scene.empty())
+        AddSample(index, row.tick(), scenes_++, scene, first);
     } else if (has_row) {
-      AddSample(index, row.tick(), rows_, SampleOf(bytes, topic), first);
+      AddSample(index, row.tick(), rows_, IsOfRosTypes(topic) ? ros_->Message(topic) : SampleOf(bytes, topic), first);
     }
     first = false;
   }

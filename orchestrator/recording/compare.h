@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
+#include "experiment/experiment.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/recording/completeness.h"
+#include "orchestrator/recording/ros_rows.h"
 #include "orchestrator/team/row_sink.h"
 
 namespace mascot {
@@ -13,8 +16,13 @@ namespace mascot {
 /// number, time and bytes. Holds one tick and one message at a time. For recordings in lockstep.
 class Comparison final : public RowSink {
  public:
-  /// `plan` is that of the recording (PlanOf), `ticks` are those of which it has rows (TicksIn).
-  Comparison(const std::string& recording, const RecordingPlan& plan, const RecordedTicks& ticks);
+  /// `plan` is that of the recording (PlanOf), `ticks` are those of which it has rows (TicksIn). `experiment`, which is
+  /// flown, must outlive this object.
+  Comparison(const std::string& recording, const RecordingPlan& plan, const RecordedTicks& ticks,
+             const Experiment& experiment);
+
+  /// As RunWriter::edges().
+  EdgeQueue* edges() { return ros_ && ros_->has_scene() ? &ros_->edges() : nullptr; }
 
   /// Compares the next tick. Throws std::runtime_error at the first difference, which ends the run. Ticks after the end
   /// of the recording are not compared.
@@ -41,12 +49,13 @@ class Comparison final : public RowSink {
   McapReader reader_;
   const RecordingPlan plan_;
   const RecordedTicks recorded_;
+  std::unique_ptr<RosRows> ros_;    // if the recording has record.ros_types
   std::vector<std::string> names_;  // of its topics
   bool over_ = false;               // the recording has ended, or differs
   std::string difference_;
   std::uint64_t messages_ = 0;
   std::int64_t ticks_ = 0, rows_ = 0;
-  std::int64_t events_ = 0;
+  std::int64_t events_ = 0, scenes_ = 0;
 };
 
 }  // namespace mascot

@@ -17,6 +17,7 @@ namespace {
 
 /// Whether a topic of this kind has a sample in every row.
 bool IsPerRow(const Topic& topic, bool realtime) {
+  if (topic.kind == TopicKind::kTf) return true;  // on the wire it comes as often as viewers need it
   const TopicRhythm rhythm = topic.traits().rhythm;
   return rhythm == TopicRhythm::kTick || (rhythm == TopicRhythm::kAnswer && !realtime);
 }
@@ -40,17 +41,21 @@ std::vector<bool> SendersOf(Section& config, const McapContents& contents, std::
   return senders;
 }
 
-/// The recorded topics (record.topics): each agent's command, message and state, then the clock and the events.
-std::vector<Topic> TopicsOf(const std::vector<std::string>& patterns, const std::vector<bool>& sends_messages) {
+/// The recorded topics (record.topics, record.ros_types): each agent's command, message, odometry and state, then the
+/// clock, the events, the scene and the transforms.
+std::vector<Topic> TopicsOf(const std::vector<std::string>& patterns, bool ros_types,
+                            const std::vector<bool>& sends_messages) {
   std::vector<Topic> topics;
   for (std::size_t i = 0; i < sends_messages.size(); ++i) {
     const int id = static_cast<int>(i) + 1;
     topics.push_back(Topic::Command(id));
     if (sends_messages[i]) topics.push_back(Topic::Message(id));
+    if (ros_types) topics.push_back(Topic::Odom(id));
     topics.push_back(Topic::State(id));
   }
   topics.push_back(Topic::Clock());
   topics.push_back(Topic::Event());
+  if (ros_types) topics.insert(topics.end(), {Topic::Scene(), Topic::Tf()});
   std::erase_if(topics, [&](const Topic& topic) { return !IsRecorded(patterns, topic); });
   return topics;
 }
@@ -294,10 +299,11 @@ RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
   plan.ticks = static_cast<std::uint64_t>(std::llround(run.Number("duration_s") * plan.rate_hz)) + 1;
   Section record = config.Child("record");
   const std::vector<std::string> patterns = record.Texts("topics");
+  plan.ros_types = record.Boolean("ros_types");
   const auto rows_hz = static_cast<int>(record.Integer("rate_hz"));
   config.ThrowIfWrong();  // before `agents` is used as a size, and rates to divide by
   plan.ticks_per_row = rows_hz == 0 ? 1 : std::max(plan.rate_hz / rows_hz, 1);
-  plan.topics = TopicsOf(patterns, SendersOf(config, contents, static_cast<std::size_t>(plan.agents)));
+  plan.topics = TopicsOf(patterns, plan.ros_types, SendersOf(config, contents, static_cast<std::size_t>(plan.agents)));
   config.ThrowIfWrong();
   return plan;
 }

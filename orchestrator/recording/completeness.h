@@ -20,6 +20,7 @@ struct RecordingPlan {
   std::uint64_t ticks = 0;    ///< ticks of a complete run
   int ticks_per_row = 1;      ///< from one row to the next (record.rate_hz)
   std::vector<Topic> topics;  ///< the recorded topics that record.topics selects
+  bool ros_types = false;     ///< among them may be those in standard types of ROS 2 (record.ros_types)
 
   /// Whether the topic has a sample in every row. In real time, agents may miss ticks: their last command is held, and
   /// commands and messages may be fewer.

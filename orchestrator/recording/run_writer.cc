@@ -25,6 +25,12 @@ RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, cons
   }
   clock_ = AddChannel(Topic::Clock());
   event_ = AddChannel(Topic::Event());
+  if (experiment.record.ros_types) {  // last: the other channels keep their numbers
+    ros_ = std::make_unique<Ros>(experiment);
+    for (int id = 1; id <= experiment.size(); ++id) ros_->odometry.push_back(AddChannel(Topic::Odom(id)));
+    ros_->scene = AddChannel(Topic::Scene());
+    ros_->tf = AddChannel(Topic::Tf());
+  }
   if (experiment.output.save_data || experiment.output.wants_pictures())  // which are made of it
     npz_.emplace(folder.File("states.npz"), experiment.size(),
                  RecordedTicks(experiment.ticks() + 1, experiment.ticks_per_row()).rows());
@@ -41,6 +47,10 @@ std::optional<std::uint16_t> RunWriter::AddChannel(const Topic& topic) {
        std::string(schema.name),
        std::string(schema.text),
        {{"offered_qos_profiles", OfferedQos(topic.traits())}, {"topic_type_hash", std::string(schema.type_hash)}}});
+}
+
+void RunWriter::WriteRos(std::optional<std::uint16_t> channel, const Topic& topic, std::uint64_t time_ns) {
+  if (channel) WriteSample(channel, time_ns, ros_->rows.Message(topic));
 }
 
 void RunWriter::WriteSample(std::optional<std::uint16_t> channel, std::uint64_t time_ns, const Row::Bytes& bytes) {
@@ -64,13 +74,19 @@ void RunWriter::Add(const FlownRow& row) {
 void RunWriter::WriteRow(const FlownRow& row) {
   const Row& bytes = row.bytes();
   const std::uint64_t time_ns = StampNs(row.tick(), experiment_.control.rate_hz);
+  if (ros_) ros_->rows.SetRow(row);
   for (std::size_t i = 0; i < bytes.states.size(); ++i) {
     WriteSample(commands_[i], time_ns, bytes.commands[i]);
     WriteSample(messages_[i], time_ns, bytes.messages[i]);
+    if (ros_) WriteRos(ros_->odometry[i], Topic::Odom(static_cast<int>(i) + 1), time_ns);
     WriteSample(states_[i], time_ns, bytes.states[i]);
   }
   WriteSample(clock_, time_ns, bytes.clock);
   WriteEvents(row);
+  if (ros_) {
+    WriteRos(ros_->scene, Topic::Scene(), time_ns);
+    WriteRos(ros_->tf, Topic::Tf(), time_ns);
+  }
   mcap_.EndTick();
   if (npz_) {
     arrays_.Set(experiment_.time_s(row.tick()), row.decoded());

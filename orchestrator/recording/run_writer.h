@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "idl/topics.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/recording/kept_row.h"
+#include "orchestrator/recording/ros_rows.h"
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/state_arrays.h"
 #include "orchestrator/recording/states_npz.h"
@@ -30,6 +32,9 @@ class RunWriter final : public RowSink {
   /// states.npz. `config`: the resolved experiment as TOML, with all events that it has or was given, to be attached.
   void Close(const std::string& config);
 
+  /// Where SceneEdges puts the states of edges, for /scene; null: the recording has no such channel.
+  EdgeQueue* edges() { return ros_ && ros_->rows.has_scene() ? &ros_->rows.edges() : nullptr; }
+
   std::int64_t ticks() const { return ticks_; }  ///< that were added
   std::int64_t rows() const { return rows_; }    ///< that were written
   std::uint64_t samples() const { return mcap_.messages(); }
@@ -40,6 +45,7 @@ class RunWriter final : public RowSink {
   std::optional<std::uint16_t> AddChannel(const Topic& topic);
   void WriteRow(const FlownRow& row);
   void WriteEvents(const FlownRow& row);
+  void WriteRos(std::optional<std::uint16_t> channel, const Topic& topic, std::uint64_t time_ns);
   void WriteSample(std::optional<std::uint16_t> channel, std::uint64_t time_ns, const Row::Bytes& bytes);
 
   const Experiment& experiment_;
@@ -47,6 +53,14 @@ class RunWriter final : public RowSink {
   std::optional<StatesNpz> npz_;
   std::vector<std::optional<std::uint16_t>> commands_, messages_, states_;  // channels by id - 1
   std::optional<std::uint16_t> clock_, event_;
+  /// The channels of record.ros_types.
+  struct Ros {
+    explicit Ros(const Experiment& experiment) : rows(experiment) {}
+    RosRows rows;
+    std::vector<std::optional<std::uint16_t>> odometry;  // channels by id - 1
+    std::optional<std::uint16_t> scene, tf;
+  };
+  std::unique_ptr<Ros> ros_;  // only with record.ros_types
   std::size_t topics_ = 0;
   std::int64_t ticks_ = 0, rows_ = 0;
   StateRow arrays_;

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "bus/cdr.h"
 #include "bus/wire.h"
+#include "orchestrator/ros/ros_scene.h"
 
 namespace mascot {
 namespace {
@@ -82,6 +84,23 @@ void AddFields(const mascot_msgs::msg::Event& event, FieldList& list) {
   list.Add("toml", event.toml());
 }
 
+void AddFields(const nav_msgs::msg::Odometry& odometry, FieldList& list) {
+  list.Add("header.stamp", odometry.header().stamp());
+  list.AddXyz("pose.pose.position", odometry.pose().pose().position());
+  list.AddXyz("pose.pose.orientation", odometry.pose().pose().orientation());
+  list.Add("pose.pose.orientation.w", odometry.pose().pose().orientation().w());
+  list.AddXyz("twist.twist.linear", odometry.twist().twist().linear());
+  list.AddXyz("twist.twist.angular", odometry.twist().twist().angular());
+}
+
+FieldList FieldsOfOdometry(SampleBytes bytes) {
+  nav_msgs::msg::Odometry odometry;
+  if (!Decode<nav_msgs::msg::OdometryPubSubType>(bytes, odometry)) throw std::runtime_error("no odometry");
+  FieldList list;
+  AddFields(odometry, list);
+  return list;
+}
+
 template <class Sample>
 FieldList FieldsAs(SampleBytes bytes) {
   Sample sample;
@@ -102,6 +121,8 @@ FieldList FieldsOf(TopicKind kind, SampleBytes bytes) {
       return FieldsAs<mascot_msgs::msg::AgentMessage>(bytes);
     case TopicKind::kEvent:
       return FieldsAs<mascot_msgs::msg::Event>(bytes);
+    case TopicKind::kOdom:
+      return FieldsOfOdometry(bytes);
     default:
       return FieldsAs<rosgraph_msgs::msg::Clock>(bytes);
   }

@@ -15,7 +15,6 @@ using Markers = visualization_msgs::msg::MarkerArray;
 enum MarkerType : std::int32_t { kCube = 1, kSphere = 2, kCylinder = 3, kLineStrip = 4, kLineList = 5, kText = 9 };
 
 constexpr double kLineWidth_m = 0.03, kTextHeight_m = 0.3;
-constexpr std::size_t kTrailPoints = 200;
 
 struct Colour {
   float r, g, b, a = 1;
@@ -30,14 +29,6 @@ geometry_msgs::msg::Point ToPoint(const Eigen::Vector3d& p) {
   point.y(p.y());
   point.z(p.z());
   return point;
-}
-
-geometry_msgs::msg::Vector3 ToVector3(const Eigen::Vector3d& v) {
-  geometry_msgs::msg::Vector3 vector;
-  vector.x(v.x());
-  vector.y(v.y());
-  vector.z(v.z());
-  return vector;
 }
 
 /// A marker that stands until another of the same name and number replaces it.
@@ -123,6 +114,14 @@ void AddEdgeMarkers(const Experiment& experiment, const SceneMoment& now, Marker
 
 }  // namespace
 
+geometry_msgs::msg::Vector3 ToVector3(const Eigen::Vector3d& v) {
+  geometry_msgs::msg::Vector3 vector;
+  vector.x(v.x());
+  vector.y(v.y());
+  vector.z(v.z());
+  return vector;
+}
+
 std_msgs::msg::Header HeaderOf(std::uint64_t time_ns, const std::string& frame) {
   std_msgs::msg::Header header;
   header.stamp().sec(static_cast<std::int32_t>(time_ns / 1'000'000'000));
@@ -152,7 +151,7 @@ tf2_msgs::msg::TFMessage TransformsOf(const SceneMoment& now) {
 void RosScene::AddToTrails(std::span<const Motion> motions) {
   for (std::size_t i = 0; i < trails_.size(); ++i) {
     trails_[i].push_back(motions[i].p_WB);
-    if (trails_[i].size() > kTrailPoints) trails_[i].pop_front();
+    if (trails_[i].size() > trail_points_) trails_[i].pop_front();
   }
 }
 

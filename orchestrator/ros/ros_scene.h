@@ -36,15 +36,20 @@ std::string CdrOf(typename PubSub::type& sample) {
   return {reinterpret_cast<const char*>(payload.data), payload.length};
 }
 
+geometry_msgs::msg::Vector3 ToVector3(const Eigen::Vector3d& v);
 std_msgs::msg::Header HeaderOf(std::uint64_t time_ns, const std::string& frame);
 
 /// The places of the agents: from kWorldFrame to a frame for each agent, which has the agent's name.
 tf2_msgs::msg::TFMessage TransformsOf(const SceneMoment& now);
 
+/// Points of a whole trail.
+inline constexpr std::size_t kTrailPoints = 200;
+
 /// A run as markers of RViz. Bodies and numbers are in the frames of their agents, which /tf moves.
 class RosScene {
  public:
-  explicit RosScene(const Experiment& experiment) : experiment_(experiment), trails_(experiment.agents.size()) {}
+  explicit RosScene(const Experiment& experiment, std::size_t trail_points = kTrailPoints)
+      : experiment_(experiment), trail_points_(trail_points), trails_(experiment.agents.size()) {}
   /// Adds the places of the agents to their trails.
   void AddToTrails(std::span<const Motion> motions);
   void ClearTrails();
@@ -55,6 +60,7 @@ class RosScene {
 
  private:
   const Experiment& experiment_;
+  std::size_t trail_points_;
   std::vector<std::deque<Eigen::Vector3d>> trails_;  // by id - 1
 };
 

@@ -17,6 +17,7 @@
 #include "orchestrator/control/run_socket.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/progress.h"
+#include "orchestrator/engines/scene_edges.h"
 #include "orchestrator/live/server/address.h"
 #include "orchestrator/live/shown/ros_view.h"
 #include "orchestrator/live/shown/view_sink.h"
@@ -181,7 +182,10 @@ int Up(UpArgs& args) {
       SummaryIfKilled(experiment, args.engine.name, LastWords::kExitCode, LastWords::kReason));
   Progress progress(experiment, meter, console);
   LawCurveRecord curve(experiment, meter);
-  std::vector<RowSink*> sinks{&writes, &meter, &curve, &progress, &requests};
+  std::vector<RowSink*> sinks;
+  std::optional<SceneEdges> edges;
+  if (writer.edges() != nullptr) sinks.push_back(&edges.emplace(experiment, *writer.edges()));
+  sinks.insert(sinks.end(), {&writes, &meter, &curve, &progress, &requests});
   viewers.AddTo(sinks);
   std::optional<RosView> ros_view;
   std::optional<ViewSink> ros_sink;

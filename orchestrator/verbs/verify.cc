@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "agent/laws/laws.h"
+#include "orchestrator/engines/scene_edges.h"
 #include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/recording/attached_experiment.h"
 #include "orchestrator/recording/compare.h"
@@ -211,8 +212,11 @@ int Verify(const VerifyArgs& args) {
   const TemporaryFolder temporary;
   const RunFolder folder(temporary.path(), experiment, /*force=*/false);
   Console console(/*quiet=*/true);
-  Comparison comparison(subject.file, subject.plan, TicksIn(subject.contents, subject.plan));
-  const std::vector<RowSink*> sinks{&comparison};
+  Comparison comparison(subject.file, subject.plan, TicksIn(subject.contents, subject.plan), experiment);
+  std::vector<RowSink*> sinks;
+  std::optional<SceneEdges> edges;
+  if (comparison.edges() != nullptr) sinks.push_back(&edges.emplace(experiment, *comparison.edges()));
+  sinks.push_back(&comparison);
   Crew crew = args.engine.MakeCrew(experiment, /*others=*/0);
   Flight flight(args.engine.name, experiment, folder, sinks, nullptr, console, stop, crew);
   const EngineResult result = flight.Fly();

@@ -70,6 +70,7 @@ TEST(Experiment, NeedsADurationAndACountOnly) {
   EXPECT_EQ(e.law.axes, Axes::kXy);
   EXPECT_EQ(e.record.file, "run.mcap");
   EXPECT_THAT(e.record.topics, ElementsAre("*"));
+  EXPECT_FALSE(e.record.ros_types);
   EXPECT_EQ(e.ticks_per_row(), 1);
   EXPECT_TRUE(e.output.position_plot && e.output.velocity_plot && e.output.save_plot && e.output.save_data);
   EXPECT_FALSE(e.output.show_plot);
@@ -115,6 +116,7 @@ TEST(Experiment, TakesEveryKeyOfTheFile) {
     [record]
     file = "other.mcap"
     topics = ["/clock"]
+    ros_types = true
     rate_hz = 50
     [output]
     position_plot = false
@@ -151,6 +153,7 @@ TEST(Experiment, TakesEveryKeyOfTheFile) {
   EXPECT_EQ(e.law.axes, Axes::kXyz);
   EXPECT_EQ(e.record.file, "other.mcap");
   EXPECT_THAT(e.record.topics, ElementsAre("/clock"));
+  EXPECT_TRUE(e.record.ros_types);
   EXPECT_EQ(e.record.rate_hz, 50);
   EXPECT_EQ(e.ticks_per_row(), 4);
   EXPECT_FALSE(e.output.position_plot || e.output.velocity_plot || e.output.save_plot || e.output.save_data);

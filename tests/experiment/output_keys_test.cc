@@ -49,6 +49,15 @@ TEST(OutputKey, RecordTopicsChooses) {
   EXPECT_TRUE(fs::exists(run.up.path() / "states.npz"));  // not affected by record.topics
 }
 
+TEST(OutputKey, RecordRosTypesAddsChannels) {
+  ScratchFolder folder;
+  const Flown run(
+      folder, "run", "leaderless",
+      {"run.duration_s=0.1", "record.ros_types=true", "record.topics=[\"/agent_1/*\", \"/tf\", \"/scene\"]"});
+  EXPECT_THAT(TopicsOf(run, "run.mcap"),
+              testing::ElementsAre("/agent_1/command", "/agent_1/state", "/agent_1/odom", "/scene", "/tf"));
+}
+
 TEST(OutputKey, RecordRateHzLeavesOutRows) {
   ScratchFolder folder;
   const Flown all(folder, "all", "leaderless", {"run.duration_s=0.25"});

@@ -447,6 +447,47 @@ TEST(Engines, EventsTakeEffectAtTheSameTickInBothAndAnotherFlightOfTheResolvedFi
   ExpectSameBytes(again, inprocess);
 }
 
+/// What RViz sees of a recorded run, and rows at a lower rate than ticks: both engines, a schedule, lost samples,
+/// events.
+TEST(Engines, RecordTypesOfRosAndFewerRowsAlike) {
+  ScratchFolder folder;
+  WriteFile(folder.File("team.toml"), R"(
+[run]
+duration_s = 2.05
+[agents]
+count = 3
+position_m = [[0, 0, 1], [4, 0, 1.5], [0, 4, 2]]
+[graph]
+topology = "ring"
+[[graph.schedule]]
+at_s = 1
+topology = "complete"
+[link]
+loss = 0.3
+[law]
+name = "consensus"
+[record]
+ros_types = true
+rate_hz = 20
+[[events]]
+at_s = 0.52
+cut = [[1, 2]]
+)");
+  Up dds(folder, "dds", folder.File("team.toml"));
+  EXPECT_EQ(dds.Wait(), 0) << dds.err();
+  Up inprocess(folder, "inprocess", folder.File("team.toml"), {"--engine", "inprocess"});
+  EXPECT_EQ(inprocess.Wait(), 0) << inprocess.err();
+  ExpectSameBytes(dds, inprocess);
+  EXPECT_EQ(Measurements(dds), Measurements(inprocess));
+  EXPECT_THAT(dds.Info(), HasSubstr("of which 42 have a row"));
+  const Ran check =
+      Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/ros_types.mjs' '" + (dds.path() / "run.mcap").string() + "'");
+  EXPECT_EQ(check.exit_code, 0) << check.output;
+  const Ran verify =
+      Shell("'" MASCOT_BINARY_DIR "/orchestrator' verify --engine dds '" + inprocess.path().string() + "'");
+  EXPECT_EQ(verify.exit_code, 0) << verify.output;
+}
+
 // Fast DDS sends more than 64 KB in fragments, and then does not pad the end.
 TEST(Engines, AnEventThatTravelsInFragmentsIsRecordedTheSame) {
   ScratchFolder folder;

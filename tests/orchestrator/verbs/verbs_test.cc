@@ -111,6 +111,7 @@ TEST_F(Verbs, CheckSaysWhatKeepsFilesSmall) {
             "  files          about 320 MB; record.rate_hz makes it smaller");
   EXPECT_EQ(files({"run.duration_s=4000", "record.rate_hz=10"}),
             "  files          about 59 MB: recording 32 MB, states.npz 27 MB");
+  EXPECT_EQ(files({"output.save_data=false", "record.ros_types=true"}), "  files          about 4.9 MB");
 }
 
 TEST_F(Verbs, CheckTakesTheOptionsOfARun) {
