@@ -69,6 +69,8 @@ void GuardProcess();
 /// Makes sys.stdout and sys.stderr print to stderr, as text that is safe for a terminal. Called once, with the GIL
 /// held.
 void TakePythonOutput();
+/// Lets Python code import the packages of FindVirtualEnvironment(). Called once, with the GIL held.
+void UseVirtualEnvironment();
 /// The text of a str in UTF-8. Half of a surrogate pair, which UTF-8 does not have, is escaped as on Python's stderr:
 /// \udc80.
 std::string TextOf(const py::handle& text);

@@ -61,6 +61,7 @@ void StartInterpreter() {
   AddPythonPath();
   TakePythonOutput();
   GuardProcess();
+  UseVirtualEnvironment();
   PyEval_SaveThread();
 }
 
@@ -119,6 +120,8 @@ PythonLock::PythonLock() {
   KeepThreadState();
   state_ = PyGILState_Ensure();
 }
+
+bool PythonHasStarted() { return Py_IsInitialized() != 0; }
 
 PythonLock::~PythonLock() { PyGILState_Release(state_); }
 

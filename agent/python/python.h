@@ -15,6 +15,9 @@ using PythonModules = std::map<std::string, std::string>;
 /// The modules in `folder` that `text` imports, itself or through each other. Throws PythonError if one cannot be read.
 PythonModules ModulesBeside(const std::string& text, const std::string& folder);
 
+/// Whether code in Python has run in this process.
+bool PythonHasStarted();
+
 /// While an object of this class lives, text that Python code in this process prints is dropped: for laws that run a
 /// second time, on ideal bodies.
 class SuppressedPythonOutput {

@@ -70,15 +70,21 @@ WorkerPool::Work WorkOf(const Sweep& sweep) {
     const bool of_run = task < tasks.CheckOfTrial(0);
     const Experiment experiment =
         sweep.Load(of_run ? sweep.plan[tasks.RunOfCheck(task)] : sweep.plan.Trial(task - tasks.CheckOfTrial(0)));
-    return nlohmann::json(
-               {{"resolved", experiment.resolved}, {"draws", DrawsOf(experiment)}, {"laws", LawsAtTheEnd(experiment)}})
+    const PythonNote python = NoteOfPython();
+    return nlohmann::json({{"resolved", experiment.resolved},
+                           {"draws", DrawsOf(experiment)},
+                           {"laws", LawsAtTheEnd(experiment)},
+                           {"python", {{"used", python.used}, {"warning", python.warning}}}})
         .dump();
   };
 }
 
 CheckedRun CheckedRunFrom(const std::string& answer) {
   const auto json = ReadJson<nlohmann::json>(answer);
-  return {json["resolved"], json["draws"], json["laws"].get<RunLaws>()};
+  return {.resolved = json["resolved"],
+          .draws = json["draws"],
+          .laws = json["laws"].get<RunLaws>(),
+          .python = {.used = json["python"]["used"], .warning = json["python"]["warning"]}};
 }
 
 std::vector<PythonMetric> MetricsFrom(const std::string& answer) {

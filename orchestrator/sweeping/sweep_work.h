@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "agent/python/environment.h"
 #include "agent/python/metrics.h"
 #include "experiment/experiment.h"
 #include "orchestrator/sweeping/plan/law_axis.h"
@@ -34,6 +35,7 @@ struct CheckedRun {
   std::string resolved;
   std::vector<std::string> draws;  ///< DrawsOf()
   RunLaws laws;
+  PythonNote python = {};
 };
 
 /// The tasks of the worker processes of a sweep of n runs: task k < n executes run k and answers with its metric cells;

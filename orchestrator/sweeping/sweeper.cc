@@ -88,6 +88,12 @@ void ExecuteMissing(const SweepPlan& plan, const Sweeper::Options& options, cons
   }
 }
 
+std::vector<std::string> LinesOf(const PythonNote& python) {
+  if (!python.used.empty()) return {"Python: " + python.used};
+  if (!python.warning.empty()) return {"warning: " + python.warning};
+  return {};
+}
+
 /// What was begun at `out`; nothing if there is no such sweep.
 std::optional<SweepIdentity> BegunAt(const std::string& out) { return SweepIdentity::FromText(PlanBeside(out)); }
 
@@ -165,8 +171,9 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
     SweepFile table(
         options.out, columns, identity.Text(), options.force,
         [&](const std::string& theirs) { return identity.DifferenceFrom(theirs); }, &plan_);
+    const PythonNote python = options.metric_file.path.empty() ? first.python : NoteOf(FindVirtualEnvironment());
     if (!options.quiet)
-      for (const std::vector<std::string>& notes : {plan_.notes(), laws.Notes()})
+      for (const std::vector<std::string>& notes : {plan_.notes(), laws.Notes(), LinesOf(python)})
         for (const std::string& note : notes) std::cerr << "sweep: " << note << "\n";
     try {
       ExecuteMissing(plan_, options, metrics, pool, table, stop, outcome);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "agent/python/environment.h"
 #include "experiment/agent_ids.h"
 #include "experiment/processes.h"
 #include "experiment/toml/input.h"
@@ -196,6 +197,7 @@ void PrintExperiment(const Experiment& experiment) {
                                     experiment.control.rate_hz));
   PrintLine("seed", SeedText(experiment));
   PrintLine("files", FilesText(FilesOf(experiment)));
+  if (const PythonNote note = NoteOfPython(); !note.used.empty()) PrintLine("python", note.used);
 }
 
 /// Prints properties of the graph; for a schedule, of the union of its graphs.
@@ -214,6 +216,7 @@ int Check(ConfigArgs& args, bool json) {
   const GraphFacts facts = FactsOf(experiment.graph, experiment.law.leader);
   Prediction prediction = Predict(experiment);
   for (std::string& warning : DeliveryWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
+  if (PythonNote note = NoteOfPython(); !note.warning.empty()) prediction.warnings.push_back(std::move(note.warning));
   if (json) {
     std::cout << JsonText(ToJson(experiment, facts, prediction));
     return 0;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "agent/python/environment.h"
 #include "agent/user_code/last_words.h"
 #include "agent/user_code/law_at_work.h"
 #include "base/utf8.h"
@@ -87,6 +88,12 @@ std::string FirstLine(const Experiment& experiment, const std::string& engine, c
                      engine == kInProcess ? std::string("in one process")
                                           : fmt::format("over DDS in {}", kModes.Name(experiment.run.mode)),
                      folder.path().string());
+}
+
+void SayPythonNote(Console& console) {
+  const PythonNote note = NoteOfPython();
+  if (!note.used.empty()) console.Line("Python: " + note.used);
+  if (!note.warning.empty()) console.Line("warning: " + note.warning);
 }
 
 /// The summary of a run whose process ends by force with this exit code, if it is known, for this reason.
@@ -170,6 +177,7 @@ int Up(UpArgs& args) {
   viewers.LogTo(folder);
   folder.Write("config.toml", experiment.resolved);
   console.Line(FirstLine(experiment, args.engine.name, folder));
+  SayPythonNote(console);
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
   if (args.engine.name == kOverDds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);

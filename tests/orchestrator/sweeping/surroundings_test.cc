@@ -55,6 +55,83 @@ TEST_F(Surroundings, ALawInPythonDoesNotDependOnTheVariablesOfAnotherPython) {
   ExpectDone("PYTHONPATH=$PWD/other \"$O\" check laws/mine.toml");
 }
 
+/// A virtual environment with a module `mine`, and one that Python and NumPy have themselves.
+class InEnvironment : public Surroundings {
+ protected:
+  InEnvironment() {
+    std::filesystem::create_directories(scratch_.path() / packages_ / "numpy");
+    Write("env/pyvenv.cfg", "home = /usr/bin\nversion = " + Version() + ".7\n");
+    Write(packages_ + "/mine.py", "x = 1\n");
+    Write(packages_ + "/there.pth", scratch_.File("edited") + "\n");
+    for (const char* module : {"/numpy/__init__.py", "/pathlib.py"})
+      Write(packages_ + module, "raise SystemExit('not the one that was meant')\n");
+    std::filesystem::create_directory(scratch_.path() / "edited");
+    Write("edited/installed_to_be_edited.py", "y = 2\n");
+    Write("law.toml", kRing +
+                          "[law]\nname = 'custom'\npython = '''\nimport numpy, pathlib, mine, "
+                          "installed_to_be_edited\n\ndef control(t, me, neighbours):\n    return [mine.x, "
+                          "installed_to_be_edited.y, 0]\n'''\n");
+    Write("plain.toml", kPython);
+    Write("metric.py", "import mine\ndef one(run):\n    return mine.x\n");
+  }
+  static std::string Version() {
+    std::string version =
+        Shell("/usr/bin/python3 -c 'import sys; print(\"%d.%d\" % sys.version_info[:2], end=\"\")'").output;
+    return version;
+  }
+  std::string Note() const {
+    return "packages of the virtual environment " + scratch_.File("env") + " (Python " + Version() +
+           "), but the system's NumPy\n";
+  }
+
+  const std::string packages_ = "env/lib/python" + Version() + "/site-packages";
+  const std::string activated_ = "VIRTUAL_ENV=$PWD/env \"$O\" ";
+};
+
+TEST_F(InEnvironment, ThatIsActivatedALawFindsItsPackages) {
+  EXPECT_THAT(In("\"$O\" check law.toml").output, HasSubstr("ModuleNotFoundError: No module named 'mine'"));
+  const Ran checked = In(activated_ + "check law.toml");
+  EXPECT_EQ(checked.exit_code, 0) << checked.output;
+  EXPECT_THAT(checked.output, HasSubstr("\n  python         " + Note()));
+  const Ran up = In(activated_ + "up law.toml --engine inprocess --out one");
+  EXPECT_EQ(up.exit_code, 0) << up.output;
+  EXPECT_THAT(up.output, HasSubstr("\nPython: " + Note()));
+  const Ran swept = In(activated_ + "sweep law.toml --seeds 1,2 --force --no-plot --metric metric.py");
+  EXPECT_EQ(swept.exit_code, 0) << swept.output;
+  EXPECT_THAT(swept.output, HasSubstr("sweep: Python: " + Note()));
+}
+
+TEST_F(InEnvironment, ThatIsActivatedAgentsOverDdsFindItsPackages) {
+  ExpectDone(activated_ + "up law.toml --engine inprocess --quiet --out one");
+  ExpectDone(activated_ + "up law.toml --quiet --out dds");
+  EXPECT_EQ(ReadFile(scratch_.File("one/run.mcap")), ReadFile(scratch_.File("dds/run.mcap")));
+}
+
+TEST_F(InEnvironment, NobodyIsToldOfWhatNobodyUses) {
+  Write("ours.toml", kConsensus);
+  EXPECT_THAT(In(activated_ + "check ours.toml").output, testing::Not(HasSubstr("virtual environment")));
+  EXPECT_THAT(In("VIRTUAL_ENV= \"$O\" check plain.toml").output, testing::Not(HasSubstr("virtual environment")));
+}
+
+TEST_F(InEnvironment, OfAnotherPythonItIsNotUsedAndThatIsTold) {
+  Write("env/pyvenv.cfg", "version_info = 3.4.5.final.0\n");
+  const std::string warning = "warning: VIRTUAL_ENV: its packages are not used: " + scratch_.File("env");
+  for (const char* verb : {"check plain.toml", "up plain.toml --engine inprocess --out run"}) {
+    const Ran ran = In(activated_ + verb);
+    EXPECT_EQ(ran.exit_code, 0);
+    EXPECT_THAT(ran.output, HasSubstr(warning + " is of Python 3.4, but code of users runs in Python " + Version() +
+                                      ": `/usr/bin/python3 -m venv` makes one of that\n"));
+  }
+  Write("env/pyvenv.cfg", "version = " + Version() + "\n");
+  std::filesystem::remove_all(scratch_.path() / packages_);
+  EXPECT_THAT(In(activated_ + "check plain.toml").output,
+              HasSubstr(warning + " has no lib/python" + Version() +
+                        "/site-packages, for the Python in which code of users runs\n"));
+  std::filesystem::remove_all(scratch_.path() / "env");
+  EXPECT_THAT(In(activated_ + "check plain.toml").output,
+              HasSubstr(warning + " has no pyvenv.cfg, and is no virtual environment\n"));
+}
+
 TEST_F(Surroundings, AnExperimentOutOfAPipeIsFlownAsOneOutOfAFile) {
   Write("experiment.toml", kConsensus);
   ExpectDone("\"$O\" up experiment.toml --engine inprocess --quiet --out file");
