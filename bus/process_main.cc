@@ -27,6 +27,7 @@
 #include "system/descendants.h"
 #include "system/failure.h"
 #include "system/left_file.h"
+#include "system/private_folder.h"
 #include "system/spawn.h"
 #include "system/usage.h"
 
@@ -63,6 +64,7 @@ int SweepAfterRun(int domain) {
   if (const auto end = words.find('\0'); end != words.npos) LeftFile(words.c_str()).Write(words.substr(end + 1));
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     SweepSharedMemory(domain);
+    SweepPrivateFolders();
     poll(nullptr, 0, kMoment_ms);
   }
   return 0;
@@ -70,6 +72,7 @@ int SweepAfterRun(int domain) {
 
 int SweepSegments(int code) {
   SweepSharedMemory(kNoDomain);
+  SweepPrivateFolders();
   return code;
 }
 

@@ -9,6 +9,7 @@
 #include "experiment/hosts.h"
 #include "experiment/law_tables.h"
 #include "experiment/live_experiment.h"
+#include "experiment/toml/input.h"
 
 namespace mascot {
 namespace {
@@ -309,6 +310,12 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   document.Done();
   document.ThrowIfWrong();
   experiment.resolved = document.Resolved();
+  if (experiment.resolved.size() > kLargestFile) {  // a run's own config.toml could not be read again
+    document.Fail("", "expected at most 16 MiB with all that travels with the experiment, got " +
+                          std::to_string(experiment.resolved.size()) +
+                          " bytes (files of law.data count once for each law table)");
+    document.ThrowIfWrong();
+  }
   if (!checked) CheckEvents(experiment, laws);
   return experiment;
 }

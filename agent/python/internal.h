@@ -75,12 +75,13 @@ void UseVirtualEnvironment();
 /// \udc80.
 std::string TextOf(const py::handle& text);
 
-/// The __builtins__ of a law: those of Python, with an import statement that knows `modules`. Each call makes new
-/// objects of the modules, so that laws share nothing.
-py::object BuiltinsOf(const PythonModules& modules);
-/// Runs `text` in a namespace of its own, which it returns. `file`, `line`: where `text` begins, for messages. Throws
-/// PythonError.
-py::dict RunPython(const std::string& text, const std::string& file, int line, const PythonModules& modules);
+/// The __builtins__ of a law: those of Python, with an import statement that knows `modules`, which get `data` as DATA.
+/// Each call makes new objects of the modules, so that laws share nothing.
+py::object BuiltinsOf(const PythonModules& modules, const py::object& data);
+/// Runs `text` in a namespace of its own, which it returns, and in which DATA has the paths of `files`. `file`, `line`:
+/// where `text` begins, for messages. Throws PythonError.
+py::dict RunPython(const std::string& text, const std::string& file, int line, const PythonModules& modules,
+                   const PythonFiles& files);
 /// The PythonError for an exception that left the user's code, whose name in messages is `file`.
 PythonError Explain(py::error_already_set& error, const std::string& file);
 /// A value as dict, list, str, int, float or bool.

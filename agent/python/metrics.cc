@@ -76,7 +76,7 @@ PythonMetrics::PythonMetrics(const std::string& text, const std::string& file, c
   const PythonLock lock;
   try {
     const LimitedPython limited(limits_, file_);
-    const py::dict space = RunPython(text, file, 1, modules);
+    const py::dict space = RunPython(text, file, 1, modules, {});
     list_ = space.contains("METRICS") ? Declared(space["METRICS"], file) : Defined(space);
     for (const PythonMetric& metric : list_) {
       const py::object function = space.contains(metric.name) ? py::object(space[py::str(metric.name)]) : py::none();

@@ -69,8 +69,9 @@ def beside(text, folder):
 class Importer:
     """What __import__ is for one law: finds the modules beside it first, then those of Python."""
 
-    def __init__(self, texts):
+    def __init__(self, texts, data):
         self.texts = texts
+        self.data = data
         self.modules = {}
         self.builtins = dict(vars(builtins), __import__=self)
 
@@ -95,7 +96,9 @@ class Importer:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
         text = self.texts[path]
         module = self.modules[name] = types.ModuleType(name)
-        module.__dict__.update(__file__=path, __package__=package_of(name, path), __builtins__=self.builtins)
+        module.__dict__.update(
+            __file__=path, __package__=package_of(name, path), __builtins__=self.builtins, DATA=self.data
+        )
         linecache.cache[path] = len(text), None, text.splitlines(True), path
         try:
             exec(compile(text, path, "exec"), module.__dict__)
@@ -126,9 +129,9 @@ PythonModules ModulesBeside(const std::string& text, const std::string& folder) 
   }
 }
 
-py::object BuiltinsOf(const PythonModules& modules) {
+py::object BuiltinsOf(const PythonModules& modules, const py::object& data) {
   if (modules.empty()) return py::module_::import("builtins");
-  return Functions()["Importer"](modules).attr("builtins");
+  return Functions()["Importer"](modules, data).attr("builtins");
 }
 
 }  // namespace mascot

@@ -105,6 +105,20 @@ void RegisterLines(const std::string& text, const std::string& file) {
   py::module_::import("linecache").attr("cache")[py::str(file)] = py::make_tuple(text.size(), py::none(), lines, file);
 }
 
+/// The mapping that Python code knows as DATA.
+py::object DataOf(const PythonFiles& files) {
+  py::dict space;
+  py::exec(R"python(
+class Data(dict):
+    """The files of law.data: the path of each, by its name there."""
+
+    def __missing__(self, name):
+        raise KeyError(f"law.data does not name {name!r}, but {', '.join(map(repr, self)) or 'nothing'}")
+)python",
+           space);
+  return space["Data"](files);
+}
+
 /// The signature of a function; None if Python cannot tell.
 py::object SignatureOf(const py::object& function) try {
   return py::module_::import("inspect").attr("signature")(function);
@@ -149,7 +163,8 @@ PythonError Explain(py::error_already_set& error, const std::string& file) {
                      is_syntax ? IntOr0(error.value(), "offset") : 0);
 }
 
-py::dict RunPython(const std::string& text, const std::string& file, int line, const PythonModules& modules) {
+py::dict RunPython(const std::string& text, const std::string& file, int line, const PythonModules& modules,
+                   const PythonFiles& files) {
   const std::string padded = std::string(static_cast<std::size_t>(line - 1), '\n') + text;
   try {
     RegisterLines(padded, file);
@@ -157,7 +172,8 @@ py::dict RunPython(const std::string& text, const std::string& file, int line, c
     py::dict space;
     space["__name__"] = "law";
     space["__file__"] = file;
-    space["__builtins__"] = BuiltinsOf(modules);
+    space["DATA"] = DataOf(files);
+    space["__builtins__"] = BuiltinsOf(modules, space["DATA"]);
     const auto result = py::reinterpret_steal<py::object>(PyEval_EvalCode(code.ptr(), space.ptr(), space.ptr()));
     if (!result) throw py::error_already_set();
     return space;

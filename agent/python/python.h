@@ -12,6 +12,9 @@ namespace mascot {
 /// The modules beside a law that it imports: their texts by their paths from the folder of the law ("shapes.py").
 using PythonModules = std::map<std::string, std::string>;
 
+/// Files that Python code reads: their absolute paths by the names by which it asks for them.
+using PythonFiles = std::map<std::string, std::string>;
+
 /// The modules in `folder` that `text` imports, itself or through each other. Throws PythonError if one cannot be read.
 PythonModules ModulesBeside(const std::string& text, const std::string& folder);
 

@@ -17,7 +17,6 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kLargestFile = 16u << 20;  // ten thousand agents with their edges need about 1 MiB
 constexpr const char* kStdin = "<stdin>";
 
 /// Owns a descriptor.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,9 @@ std::string NameOfInput(const std::string& path);
 /// The file's name without folder and ending, which is the name of what the file describes; "" for a descriptor, which
 /// has no name. `name` is that of NameOfInput().
 std::string StemOfInput(const std::string& name);
+
+/// The largest file that is read as text (bytes): ten thousand agents with their edges need about 1 MiB.
+inline constexpr std::size_t kLargestFile = std::size_t{16} << 20;
 
 /// The text at `path`: that of a regular file, or all that comes out of an open descriptor, which can be read only
 /// once. At most 16 MiB. Throws ConfigError, e.g. "PATH: is a directory".

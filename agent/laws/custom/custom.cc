@@ -19,6 +19,11 @@ constexpr Key kCustomParameters[] = {
         .Live(),
     key::Any("modules", "texts of the modules that the law imports, by their paths from its folder")
         .Otherwise("those that stand beside it"),
+    key::Texts("data",
+               "files that the law reads, by their paths from the folder of this file, below it; they travel with the "
+               "experiment, together at most 4 MiB: the law finds the path of each as DATA[name]")
+        .Otherwise("none"),
+    key::Any("data_base64", "the contents of data in base64, by name").Otherwise("what the files hold"),
     key::OneOf("style", kPythonStyles.names(),
                "mascot: the published testbed's control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, "
                "leader)")
@@ -89,6 +94,7 @@ void ReadText(const Experiment& experiment, Section& law, CustomParams& params) 
 
 void ReadKeys(const Experiment& experiment, Section& law, CustomParams& params) {
   ReadText(experiment, law, params);
+  params.data = ReadLawData(law);
   params.style = kPythonStyles.Value(law.OneOf("style"));
   params.wanted = kPythonOutputs.Value(law.OneOf("output"));
   if (law.Has("params") && law.Kind("params") != "table")

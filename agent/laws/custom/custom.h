@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "agent/laws/custom/custom_data.h"
 #include "agent/laws/laws.h"
 #include "agent/python/internal.h"
 #include "experiment/experiment.h"
@@ -28,6 +29,7 @@ struct CustomParams final : LawParams {
   std::string file;  ///< the file's name in messages
   int line = 1;      ///< line of `file` at which `text` begins
   PythonModules modules;
+  std::shared_ptr<const LawData> data;
   PythonStyle style = PythonStyle::kStandard;
   Wanted wanted = Wanted::kAcceleration;
   Value params;  ///< a table
@@ -37,7 +39,8 @@ struct CustomParams final : LawParams {
 class PythonModule {
  public:
   explicit PythonModule(const CustomParams& params)
-      : space_(RunPython(params.text, params.file, params.line, params.modules)) {}
+      : data_(params.data),
+        space_(RunPython(params.text, params.file, params.line, params.modules, params.data->Paths())) {}
 
   /// PARAMETERS, which the text may define: the parameters that the law takes, with their defaults; else None.
   py::object Parameters() const {
@@ -50,6 +53,7 @@ class PythonModule {
   }
 
  private:
+  std::shared_ptr<const LawData> data_;  // keeps the files there that the code may read later
   py::dict space_;
 };
 

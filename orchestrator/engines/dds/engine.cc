@@ -35,6 +35,7 @@
 #include "system/children.h"
 #include "system/descendants.h"
 #include "system/failure.h"
+#include "system/private_folder.h"
 
 namespace mascot {
 namespace {
@@ -588,6 +589,7 @@ bool DdsRun::End() {
   if (library_hangs_) return false;
   if (is_half_made) return true;  // a participant that failed to join has files open until our end: the janitor sweeps
   if (lock_) SweepSharedMemory(lock_->domain());
+  SweepPrivateFolders();  // of processes that were killed
   if (janitor_) janitor_->Dismiss();
   return true;
 }

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "agent/laws/laws.h"
+#include "base/base64.h"
 #include "experiment/live_experiment.h"
 #include "experiment/live_keys.h"
 #include "tests/support/ideal_network.h"
@@ -63,7 +64,16 @@ std::vector<Setting> CustomSettings() {
            "' }\npython = '''\nimport gains\ndef control(t, me, neighbours):\n"
            "  return -me.velocity + sum(gains.GAIN * (j.position - me.position) for j in neighbours)\n'''\n";
   };
+  const std::string weighed =
+      "python = '''\ndef control(t, me, neighbours):\n  return sum(float(open(file).read()) for file in "
+      "DATA.values()), 0\n"
+      "'''\n";
+  const auto with_data = [&](const std::string& base64) {
+    return "data = ['w']\ndata_base64 = { w = '" + base64 + "' }\n" + weighed;
+  };
   return {{"python", law("1.0"), law("1.1")},
+          {"data", weighed, with_data(ToBase64("1.0"))},
+          {"data_base64", with_data(ToBase64("1.0")), with_data(ToBase64("1.5"))},
           {"modules", with_module("1.0"), with_module("1.1")},
           {"params", law("1.0"), law("1.0") + "params = { gain = 0.5 }\n"},
           {"style", law("1.0"), published},

@@ -15,6 +15,7 @@
 #include "system/descendants.h"
 #include "system/environment.h"
 #include "system/failure.h"
+#include "system/private_folder.h"
 
 namespace mascot {
 namespace {
@@ -169,6 +170,7 @@ void HostShare::Leave() {
   children_.Stop(code_ == 0 ? 2s : 500ms);
   TellExits();
   KillDescendants({janitor_ ? janitor_->process() : 0});
+  SweepPrivateFolders();
   if (!lock_) return;
   SweepSharedMemory(domain_);
   if (janitor_) janitor_->Dismiss();  // none if it could not be started
