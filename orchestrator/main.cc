@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "bus/foreign_settings.h"
 #include "bus/leave.h"
 #include "experiment/toml/section.h"
+#include "orchestrator/verbs/law_trial.h"
 #include "orchestrator/verbs/verb.h"
 #include "system/descendants.h"
 #include "system/failure.h"
@@ -84,6 +86,7 @@ int Main(int argc, char** argv) {
     return kExitUsage;
   }
   if (argv[1] == std::string_view("help")) return Help(app, argc > 2 ? argv[2] : "");
+  if (argc == 3 && argv[1] == std::string_view(kTrialFlight)) return FlyTrial(std::atoi(argv[2]));
   if (argv[1][0] != '-' && !IsVerb(argv[1])) return UnknownVerb(argv[1]);
   try {
     app.parse(argc, argv);

@@ -96,6 +96,17 @@ bool FliesCodeOfUsers(const Experiment& experiment) {
   return EverFlies(experiment, [](const LawEntry& law) { return law.is_of_user; });
 }
 
+std::vector<std::string> UnreadParams(const Experiment& experiment) {
+  std::vector<std::string> warnings;
+  for (const AgentConfig& agent : experiment.agents) {
+    const LawEntry& law = EntryOf(agent.law);
+    if (law.unread == nullptr) continue;
+    for (std::string& warning : law.unread(agent.law))
+      if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(std::move(warning));
+  }
+  return warnings;
+}
+
 bool EverLeavesOut(const Experiment& experiment) {
   return EverFlies(experiment, [](const LawEntry& law) { return law.left_out != nullptr; });
 }

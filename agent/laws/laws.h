@@ -88,6 +88,7 @@ struct LawEntry {
   bool agrees = false;                      ///< agents agree by what they hear, which needs a spanning tree
   bool gathers = false;                     ///< agents meet in one place, where only their heights keep them apart
   bool is_of_user = false;                  ///< it runs code that a user of this program has written
+  std::string_view seeded = {};             ///< what such code is to draw random numbers from, in words for warnings
   /// The law uses what the agent sees of obstacles (Law::See), to keep clear of them.
   bool sees_obstacles = false;
   Drawing drawing;
@@ -98,6 +99,8 @@ struct LawEntry {
   std::unique_ptr<Law> (*make)(const Experiment& experiment, int id);
   /// Whether the law may draw random numbers by run.seed; null: it draws none.
   bool (*draws)(const LawConfig& law) = nullptr;
+  /// What is to be said of parameters in the file that the law, which has been flown, has not looked up; null: nothing.
+  std::vector<std::string> (*unread)(const LawConfig& law) = nullptr;
   /// What the law wants; null: an acceleration.
   Wanted (*wanted)(const LawConfig& law) = nullptr;
   /// d_i: each agent's place in the formation, in W (m), by id - 1; null: no places.
@@ -128,6 +131,9 @@ std::span<const LawEntry> Laws();
 std::vector<const LawEntry*> LawsIn(const Experiment& experiment);
 /// Whether agents fly a law that runs code of a user, at the start or later.
 bool FliesCodeOfUsers(const Experiment& experiment);
+/// Warnings of parameters that the laws at the start, flown from this very object or from copies of it, have not looked
+/// up so far, each once.
+std::vector<std::string> UnreadParams(const Experiment& experiment);
 /// Whether agents fly a law that leaves out some of what it hears (LawEntry::left_out), at the start or later.
 bool EverLeavesOut(const Experiment& experiment);
 /// LawEntry::details, paragraph by paragraph.

@@ -23,6 +23,7 @@
 #include "orchestrator/theory/graph_facts.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/config_args.h"
+#include "orchestrator/verbs/law_trial.h"
 #include "orchestrator/verbs/size_text.h"
 #include "orchestrator/verbs/verb.h"
 
@@ -217,6 +218,7 @@ int Check(ConfigArgs& args, bool json) {
   Prediction prediction = Predict(experiment);
   for (std::string& warning : DeliveryWarnings(experiment)) prediction.warnings.push_back(std::move(warning));
   if (PythonNote note = NoteOfPython(); !note.warning.empty()) prediction.warnings.push_back(std::move(note.warning));
+  for (std::string& warning : TryLaws(experiment).warnings) prediction.warnings.push_back(std::move(warning));
   if (json) {
     std::cout << JsonText(ToJson(experiment, facts, prediction));
     return 0;

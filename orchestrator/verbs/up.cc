@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "agent/laws/laws.h"
 #include "agent/python/environment.h"
 #include "agent/user_code/last_words.h"
 #include "agent/user_code/law_at_work.h"
@@ -235,6 +236,9 @@ int Up(UpArgs& args) {
                        .topics = writer.topics(),
                        .samples = writer.samples()};
   if (!claims.empty() && ExitCode(result) == 0) result.failure = FailedClaims(claims, RunFigures(flown).all());
+  // Laws that have flown the whole run in this process, perhaps on ideal bodies alone.
+  if (ExitCode(result) == 0 && (args.engine.name == kInProcess || experiment.output.fidelity))
+    for (const std::string& warning : UnreadParams(experiment)) console.Line("warning: " + warning);
   viewers.SayHowItEnded(result);
   if (!result.failure.empty()) std::cerr << "error: " << result.failure << "\n";
 

@@ -22,6 +22,7 @@
 #include "orchestrator/recording/fingerprint.h"
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/verbs/fly.h"
+#include "orchestrator/verbs/law_trial.h"
 #include "orchestrator/verbs/verb.h"
 #include "system/interruptions.h"
 
@@ -222,6 +223,9 @@ int Verify(const VerifyArgs& args) {
   const EngineResult result = flight.Fly();
   if (result.failure.empty() && result.signal == 0) comparison.Finish();
   const int code = Report(subject, comparison, result);
+  if (code == kExitFailed)
+    if (const std::string cause = TryLaws(experiment).difference; !cause.empty())
+      std::cout << "a likely cause: " << cause << std::endl;
   flight.End();
   flight.LeaveIfItHangs(code);
   return code;

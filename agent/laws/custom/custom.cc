@@ -137,6 +137,10 @@ std::unique_ptr<Law> MakeCustom(const Experiment& experiment, int id) {
 }
 
 bool DrawsByCustom(const LawConfig& law) { return CanDraw(ParamsOf<CustomParams>(law)); }
+std::vector<std::string> UnreadByCustom(const LawConfig& law) {
+  const auto& params = ParamsOf<CustomParams>(law);
+  return params.looked_up->Warnings(params.params);
+}
 Wanted WantedByCustom(const LawConfig& law) { return ParamsOf<CustomParams>(law).wanted; }
 
 }  // namespace
@@ -152,11 +156,13 @@ LawEntry CustomLaw() {
           .source = "docs/laws.md",
           .parameters = kCustomParameters,
           .is_of_user = true,
+          .seeded = "me.random is each agent's own generator in Python, and run.seed seeds it",
           .sees_obstacles = true,
           .drawing = {.pictures = kDisagreementPicture},
           .read = ReadCustom,
           .make = MakeCustom,
           .draws = DrawsByCustom,
+          .unread = UnreadByCustom,
           .wanted = WantedByCustom};
 }
 

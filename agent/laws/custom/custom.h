@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "agent/laws/custom/custom_data.h"
+#include "agent/laws/custom/looked_up.h"
 #include "agent/laws/laws.h"
 #include "agent/python/internal.h"
 #include "experiment/experiment.h"
@@ -32,7 +33,8 @@ struct CustomParams final : LawParams {
   std::shared_ptr<const LawData> data;
   PythonStyle style = PythonStyle::kStandard;
   Wanted wanted = Wanted::kAcceleration;
-  Value params;  ///< a table
+  Value params;                                                        ///< a table
+  std::shared_ptr<LookedUp> looked_up = std::make_shared<LookedUp>();  ///< by the laws of all agents with these params
 };
 
 /// The user's text, run in a Python namespace of its own for one agent.

@@ -15,7 +15,8 @@ class Published final : public PythonLaw {
       : PythonLaw(id, params, limits.call, "control_user"),
         agents_(static_cast<std::size_t>(agents)),
         leader_(leader - 1),
-        columns_(6, std::vector<double>(agents_)) {
+        columns_(6, std::vector<double>(agents_)),
+        looked_up_(params.looked_up) {
     const PythonLock lock;
     py::module_::import("numpy");
     GuardedImport(limits.import, [&] { control_user_.emplace(PythonModule(params).Function("control_user")); });
@@ -39,6 +40,7 @@ class Published final : public PythonLaw {
       const py::object force =
           (*control_user_)(Array(columns_[0]), Array(columns_[1]), Array(columns_[2]), Array(columns_[3]),
                            Array(columns_[4]), Array(columns_[5]), id() - 1, agents_, leader_);
+      if (!std::exchange(is_called_, true)) looked_up_->NoteCall();
       return ToVector(force, "; entries of agents that i = " + std::to_string(id() - 1) +
                                  " does not hear are NaN, and it hears " + (known.empty() ? "nobody" : known) +
                                  " (counted from 0)");
@@ -59,6 +61,8 @@ class Published final : public PythonLaw {
   std::size_t agents_;
   int leader_;                                // counted from 0; -1: none
   std::vector<std::vector<double>> columns_;  // pos_x, vel_x, acc_x, pos_y, vel_y, acc_y
+  std::shared_ptr<LookedUp> looked_up_;
+  bool is_called_ = false;
   std::optional<py::object> control_user_;
 };
 

@@ -26,12 +26,12 @@ struct Names {
 class Standard final : public PythonLaw {
  public:
   Standard(const CustomParams& params, const CustomLimits& limits, std::uint64_t seed, int id)
-      : PythonLaw(id, params, limits.call, "control"), params_(ToToml(params.params)) {
+      : PythonLaw(id, params, limits.call, "control"), params_(ToToml(params.params)), looked_up_(params.looked_up) {
     const PythonLock lock;
     py::module_::import("numpy");  // now, so that the first tick does not wait for it
     GuardedImport(limits.import, [&] { objects_.emplace(params); });
     Objects& o = *objects_;
-    if (!o.start.is_none() || !o.set.is_none()) o.TakeParams(params.params);
+    if (!o.start.is_none() || !o.set.is_none()) o.TakeParams(params);
     o.me = o.agent_class();
     o.me.attr("id") = id;
     o.me.attr("weight") = 0.0;
@@ -61,16 +61,18 @@ class Standard final : public PythonLaw {
       o.params_changed = false;
       py::list neighbours(heard.size());
       for (std::size_t k = 0; k < heard.size(); ++k) neighbours[k] = Neighbour(heard[k]);
-      return ToVector(o.control(t_s, o.me, neighbours), "");
+      const Eigen::Vector3d wanted = ToVector(o.control(t_s, o.me, neighbours), "");
+      if (!std::exchange(is_called_, true)) looked_up_->NoteCall();
+      return wanted;
     });
   }
 
   void Adopt(const AgentConfig& agent) override {
     const PythonLock lock;
-    const Value& params = ParamsOf<CustomParams>(agent.law).params;
-    if (ToToml(params) == params_) return;
-    params_ = ToToml(params);
-    objects_->TakeParams(params);
+    const auto& law = ParamsOf<CustomParams>(agent.law);
+    if (ToToml(law.params) == params_) return;
+    params_ = ToToml(law.params);
+    objects_->TakeParams(law);
     objects_->params_changed = true;
   }
 
@@ -97,12 +99,16 @@ class Standard final : public PythonLaw {
       py::exec(kClasses, space);
       agent_class = space["Agent"];
     }
-    /// The law's params become the defaults of PARAMETERS, with `given` in their places.
-    void TakeParams(const Value& given) {
+    /// The law's params become the defaults of PARAMETERS, with those that are given in their places.
+    void TakeParams(const CustomParams& law) {
       const py::object defaults = module.Parameters();
-      params = py::dict();
-      if (!defaults.is_none()) params.attr("update")(py::module_::import("copy").attr("deepcopy")(defaults));
-      params.attr("update")(ToPython(given));
+      if (defaults.is_none()) {
+        params = LookedUp::Watched(ToPython(law.params), law.looked_up);
+        return;
+      }
+      params = py::module_::import("copy").attr("deepcopy")(defaults);
+      params.attr("update")(ToPython(law.params));
+      law.looked_up->TakeAll();
     }
     PythonModule module;
     py::object control = module.Function("control"), start = module.Function("start"),
@@ -136,6 +142,8 @@ class Standard final : public PythonLaw {
   std::optional<Objects> objects_;  // made and destroyed with the GIL held
   std::span<const Eigen::Vector3d> seen_W_;
   std::string params_;  // as TOML
+  std::shared_ptr<LookedUp> looked_up_;
+  bool is_called_ = false;
   std::vector<double> message_;
 };
 

@@ -108,6 +108,7 @@ LawEntry PluginLaw() {
           .source = "docs/plugin_law.md",
           .parameters = kPluginParameters,
           .is_of_user = true,
+          .seeded = "the setup of a law in C++ has run.seed and the agent's id, to seed generators with",
           .sees_obstacles = true,
           .drawing = {.pictures = kDisagreementPicture},
           .read = ReadPlugin,
