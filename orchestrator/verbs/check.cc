@@ -26,6 +26,8 @@
 #include "orchestrator/verbs/law_trial.h"
 #include "orchestrator/verbs/size_text.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/interruptions.h"
+#include "system/stop_signal.h"
 
 namespace mascot {
 namespace {
@@ -213,6 +215,8 @@ void PrintGraph(const GraphFacts& facts, const Schedule& schedule) {
 }
 
 int Check(ConfigArgs& args, bool json) {
+  StopSignal stop;
+  const EndsAtOnce at_once(stop);  // also while laws are tried
   Experiment experiment = args.Load();
   const GraphFacts facts = FactsOf(experiment.graph, experiment.law.leader);
   Prediction prediction = Predict(experiment);

@@ -92,6 +92,15 @@ TEST_F(LawTrial, TellsOfALawThatFailsOrCrashes) {
                 "was killed by signal 11"));
 }
 
+TEST_F(LawTrial, EndsAtASignal) {
+  Write("def control(t, me, neighbours):\n  if t > 0.1: open('" + scratch_.File("hangs") +
+        "', 'w').close()\n  while t > 0.1: pass\n  return 0, 0\n");
+  Running check(MASCOT_BINARY_DIR "/orchestrator", {"check", scratch_.File("law.toml")}, scratch_.File("check"));
+  ASSERT_TRUE(Until([&] { return std::filesystem::exists(scratch_.File("hangs")); })) << check.err();
+  check.Signal(SIGINT);
+  EXPECT_EQ(check.Wait(), 130);
+}
+
 TEST_F(LawTrial, IsTheCauseThatVerifyNames) {
   Write("import numpy\nd = numpy.random.default_rng()\ndef control(t, me, neighbours):\n  return d.normal(), 0\n");
   ASSERT_EQ(Orchestrator("up law.toml --engine inprocess --out run --quiet").exit_code, 0);
