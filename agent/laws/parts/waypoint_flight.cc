@@ -62,7 +62,9 @@ WaypointParams ReadWaypoints(Section& law, const std::string& prefix) {
 
 std::map<int, WaypointParams> ReadWaypointsOfAgents(Section& law, std::span<const AgentConfig> agents) {
   const bool is_each = std::ranges::any_of(agents, [](const AgentConfig& agent) { return !agent.waypoints_W.empty(); });
-  if (!is_each || law.Has("waypoints_m")) return {{0, ReadWaypoints(law, "")}};
+  if (law.Has("waypoints_m")) return {{0, ReadWaypoints(law, "")}};
+  if (!is_each)
+    law.Fail("waypoints_m", "expected targets of all agents here, or of each in agents.waypoints_m, got none");
   std::map<int, WaypointParams> flights{{0, ReadFlight(law, "")}};
   for (const AgentConfig& agent : agents) {
     if (agent.waypoints_W.empty()) continue;

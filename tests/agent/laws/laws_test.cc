@@ -487,7 +487,8 @@ TEST(LawErrors, OfConsensus) {
 
 TEST(LawErrors, OfWaypoint) {
   const std::string way = "waypoints_m = [[1, 2, 3], [4, 5, 6]]\n";
-  EXPECT_EQ(Mistake("waypoint", ""), "law.waypoints_m: expected a list of points [x, y, z], got nothing");
+  EXPECT_EQ(Mistake("waypoint", ""),
+            "law.waypoints_m: expected targets of all agents here, or of each in agents.waypoints_m, got none");
   EXPECT_EQ(Mistake("waypoint", "waypoints_m = []"),
             "law.waypoints_m: expected a list of points [x, y, z], got nothing");
   EXPECT_EQ(Mistake("waypoint", "waypoints_m = 3"), "law.waypoints_m: expected a list of points [x, y, z], got 3");

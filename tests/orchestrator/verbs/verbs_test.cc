@@ -326,12 +326,12 @@ TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
     for (const Key& parameter : law.parameters) EXPECT_THAT(text, HasSubstr(std::string(parameter.meaning)));
     for (const LawFigure& figure : law.figures) EXPECT_THAT(text, HasSubstr(std::string(figure.meaning)));
   }
-  EXPECT_THAT(text, AllOf(HasSubstr(" waypoints_m~* "), HasSubstr(" p_gain~ = 1.0 ")));
+  EXPECT_THAT(text, AllOf(HasSubstr(" goals_m~* "), HasSubstr(" p_gain~ = 1.0 ")));
   const Json json = Json::parse(Printed(SetUpLaws, {"--json"}));
   ASSERT_EQ(json.size(), Laws().size());
   EXPECT_EQ(json[1]["name"], "waypoint");
   EXPECT_EQ(json[1]["axes"], "xyz");
-  EXPECT_EQ(json[1]["parameters"][0]["required"], true);
+  EXPECT_EQ(json[1]["parameters"][0]["required"], false) << "each agent may have its own";
   EXPECT_EQ(json[1]["parameters"][1]["default"], 1.0);
 }
 
