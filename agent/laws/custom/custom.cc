@@ -156,7 +156,7 @@ LawEntry CustomLaw() {
           .source = "docs/laws.md",
           .parameters = kCustomParameters,
           .is_of_user = true,
-          .seeded = "me.random is each agent's own generator in Python, and run.seed seeds it",
+          .seeded = "me.rng is each agent's own generator in Python, and run.seed seeds it",
           .sees_obstacles = true,
           .drawing = {.pictures = kDisagreementPicture},
           .read = ReadCustom,

@@ -37,7 +37,8 @@ class Standard final : public PythonLaw {
     o.me.attr("weight") = 0.0;
     o.me.attr("age_s") = 0.0;
     o.me.attr("message") = py::none();
-    o.me.attr("random") = py::module_::import("numpy").attr("random").attr("default_rng")(py::make_tuple(seed, id));
+    o.me.attr("rng") = py::module_::import("numpy").attr("random").attr("default_rng")(py::make_tuple(seed, id));
+    o.me.attr("random") = o.me.attr("rng");
   }
   ~Standard() override {
     const PythonLock lock;

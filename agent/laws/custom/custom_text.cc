@@ -103,9 +103,11 @@ bool TryText(Section& law, CustomParams& params, const LawLimits& limits) {
   }
 }
 
-// Only me.random knows run.seed, and control_user(...) is given no `me`.
+// Only me.rng, or me.random, knows run.seed, and control_user(...) is given no `me`.
 bool CanDraw(const CustomParams& params) {
-  const auto names_it = [](const std::string& text) { return text.find("random") != std::string::npos; };
+  const auto names_it = [](const std::string& text) {
+    return text.find("random") != std::string::npos || text.find("rng") != std::string::npos;
+  };
   const auto& modules = params.modules;
   return params.style == PythonStyle::kStandard &&
          (names_it(params.text) ||

@@ -137,7 +137,8 @@ LawEntry FiniteTimeLaw() {
           "sum is taken first and its sign then.",
       .theory =
           "undirected and connected: power meets at the mean of p(0), after at most 4 V^((1-alpha)/2) / "
-          "((1-alpha) (4 lambda)^((1+alpha)/2)); sign meets midway between the outermost agents, when these "
+          "((1-alpha) (4 lambda)^((1+alpha)/2)), V = |p(0) - mean|^2 / 2, lambda = lambda_2 of the Laplacian of the "
+          "weights (gain a_ij)^(2/(1+alpha)); sign meets midway between the outermost agents, when these "
           "have flown there: (max p(0) - min p(0)) / (2 gain). Sampled, agents tremble about it: predicted as flown",
       .source =
           "sign: Cortes, Finite-time convergent gradient flows with applications to network consensus, Automatica 42 "

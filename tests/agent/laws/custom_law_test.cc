@@ -109,7 +109,7 @@ TEST(CustomLaw, HasRandomNumbersOfItsOwnFromTheSeed) {
     Experiment experiment =
         LoadExperiment(Section::FromText("[run]\nduration_s = 1.0\nseed = " + seed +
                                              "\n[agents]\ncount = 3\n[graph]\nedges = []\n[law]\nname = 'custom'\n"
-                                             "python = 'def control(t, me, neighbours): return me.random.random(2)'\n",
+                                             "python = 'def control(t, me, neighbours): return me.rng.random(2)'\n",
                                          "test.toml"),
                        "test");
     return Agent(experiment, id).Want(0, Motion{}, {}).a_law_W;

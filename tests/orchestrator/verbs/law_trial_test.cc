@@ -43,7 +43,7 @@ TEST_F(LawTrial, TellsOfRandomNumbersWithoutASeed) {
     EXPECT_THAT(
         Check(std::string("import numpy, os, random, uuid\ndef control(t, me, neighbours):\n  return ") + draws + "\n"),
         AllOf(HasSubstr("warning: law: agent "), HasSubstr(kUnrepeatable), Not(HasSubstr(kShares)),
-              HasSubstr("me.random is each agent's own generator in Python, and run.seed seeds it")))
+              HasSubstr("me.rng is each agent's own generator in Python, and run.seed seeds it")))
         << draws;
 }
 
@@ -64,10 +64,9 @@ TEST_F(LawTrial, TellsOfGeneratorsThatAgentsShareAlsoIfTheyAreSeeded) {
 }
 
 TEST_F(LawTrial, SaysNothingOfWhatCanBeRepeated) {
-  EXPECT_THAT(
-      Check("import numpy\ndef start(me, params):\n  me.own = numpy.random.default_rng(me.id)\n"
-            "def control(t, me, neighbours):\n  return me.random.normal() + me.own.normal() + hash('a') % 7, 0\n"),
-      Not(HasSubstr("warning: law")));
+  EXPECT_THAT(Check("import numpy\ndef start(me, params):\n  me.own = numpy.random.default_rng(me.id)\n"
+                    "def control(t, me, neighbours):\n  return me.rng.normal() + me.own.normal() + hash('a') % 7, 0\n"),
+              Not(HasSubstr("warning: law")));
 }
 
 TEST_F(LawTrial, TellsOfParametersThatAreNotLookedUp) {
