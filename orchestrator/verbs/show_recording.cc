@@ -58,9 +58,9 @@ int ShowRecording(const std::string& run, const Showing& showing, const std::str
   std::optional<MetricCurves> metric_curves;
   std::optional<MetricReader> metric_reader;
   if (showing.metrics != nullptr) {
-    metric_curves.emplace(recorded.experiment(), *showing.metrics, recorded.rows().ticks().rows() - 1,
-                          MetricCurves::Rows::kAllAtOnce,
-                          [&view](std::string message) { view->SetMetrics(std::move(message)); });
+    metric_curves.emplace(
+        recorded.experiment(), *showing.metrics, recorded.rows().ticks().rows() - 1, MetricCurves::Rows::kAllAtOnce,
+        [&view](std::string message) { view->SetMetrics(std::move(message)); }, log);
     metric_reader.emplace(run, *metric_curves, log);
   }
   PrintAddresses(*view, console);

@@ -84,8 +84,10 @@ Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experi
   view_->SetExperiment(experiment, ShownKeysOf(experiment));
   events_.emplace(*view_, requests);
   if (metrics_)
-    metric_curves_.emplace(experiment, *metrics_, experiment.ticks(), MetricCurves::Rows::kAsTheyCome,
-                           [this](std::string message) { view_->SetMetrics(std::move(message)); });
+    metric_curves_.emplace(
+        experiment, *metrics_, experiment.ticks(), MetricCurves::Rows::kAsTheyCome,
+        [this](std::string message) { view_->SetMetrics(std::move(message)); },
+        [this](const std::string& line) { Log(line); });
   requests.CallWhenChanged([this](const RunStatus& status) {
     const auto phase = status.paused ? RunState::Phase::kPaused : RunState::Phase::kRunning;
     view_->SetState({.phase = phase, .pace = status.pace});

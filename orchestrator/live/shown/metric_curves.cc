@@ -11,18 +11,20 @@ namespace mascot {
 namespace {
 
 constexpr auto kBetweenMessages = std::chrono::milliseconds(500);
+constexpr int kFailures = 5;     // in a row, are worth a line in the log: the beginning of a run may have no value yet
 constexpr int kRestPerWork = 9;  // of a run: so many times as long as it works, the thread rests
 
 }  // namespace
 
 MetricCurves::MetricCurves(const Experiment& experiment, const PythonMetrics& metrics, std::int64_t last_row, Rows rows,
-                           std::function<void(std::string)> publish)
+                           std::function<void(std::string)> publish, std::function<void(const std::string&)> log)
     : experiment_(experiment),
       metrics_(metrics),
       last_row_(last_row),
       every_(std::max<std::int64_t>(1, (last_row + kPoints - 1) / kPoints)),
       rows_(rows),
       publish_(std::move(publish)),
+      log_(std::move(log)),
       arrays_(experiment) {
   arrays_.Reserve(static_cast<std::size_t>(last_row + 1));
   publish_(Message());
@@ -84,9 +86,12 @@ void MetricCurves::Evaluate(std::int64_t row) {
   try {
     point.values = metrics_.Of(arrays);
     error_.clear();
+    failures_ = 0;
   } catch (const std::runtime_error& failure) {  // of a part of the run, of which nobody may have thought
     point.values.resize(metrics_.list().size());
     error_ = failure.what();
+    if (++failures_ < kFailures && row < last_row_) return;
+    if (std::exchange(logged_, error_) != error_) log_("warning: --metric: " + error_);
   }
 }
 

@@ -30,9 +30,10 @@ class MetricCurves final : public RowSink {
   };
 
   /// `last_row`: number of the run's last row, from 0. `publish` takes the message of /ui/metrics whenever there is
-  /// more, from this object's thread. All arguments but `last_row` and `rows` must outlive this object.
+  /// more, and `log` a line if the metrics go on failing, both from this object's thread. All arguments but `last_row`
+  /// and `rows` must outlive this object.
   MetricCurves(const Experiment& experiment, const PythonMetrics& metrics, std::int64_t last_row, Rows rows,
-               std::function<void(std::string)> publish);
+               std::function<void(std::string)> publish, std::function<void(const std::string&)> log);
   MetricCurves(const MetricCurves&) = delete;
   MetricCurves& operator=(const MetricCurves&) = delete;
 
@@ -65,6 +66,7 @@ class MetricCurves final : public RowSink {
   const std::int64_t last_row_, every_;
   const Rows rows_;
   const std::function<void(std::string)> publish_;
+  const std::function<void(const std::string&)> log_;
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
@@ -74,6 +76,8 @@ class MetricCurves final : public RowSink {
   bool is_idle_ = true;              // guarded by mutex_
   std::vector<Point> points_;        // of the thread
   std::string error_;                // of the thread: why the last evaluation failed
+  int failures_ = 0;                 // of the thread: evaluations that failed since one did not
+  std::string logged_;               // of the thread: the error that was logged last
   WallClock::time_point published_;
   std::jthread thread_;  // last: it uses the others
 };

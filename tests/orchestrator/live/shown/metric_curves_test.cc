@@ -23,10 +23,16 @@ constexpr const char* kRun =
 struct Published {
   explicit Published(const Experiment& experiment, const PythonMetrics& metrics, std::int64_t last_tick,
                      MetricCurves::Rows rows = MetricCurves::Rows::kAllAtOnce)
-      : curves(experiment, metrics, last_tick, rows, [this](const std::string& message) {
-          const std::lock_guard lock(mutex);
-          newest = nlohmann::json::parse(message);
-        }) {}
+      : curves(
+            experiment, metrics, last_tick, rows,
+            [this](const std::string& message) {
+              const std::lock_guard lock(mutex);
+              newest = nlohmann::json::parse(message);
+            },
+            [this](const std::string& line) {
+              const std::lock_guard lock(mutex);
+              lines.push_back(line);
+            }) {}
   nlohmann::json Newest() {
     curves.Wait();
     const std::lock_guard lock(mutex);
@@ -34,6 +40,7 @@ struct Published {
   }
   std::mutex mutex;
   nlohmann::json newest;
+  std::vector<std::string> lines;
   MetricCurves curves;
 };
 
@@ -87,6 +94,8 @@ TEST(MetricCurves, SayWhyAMetricHasFailedAsLongAsItDoes) {
   const MetricReader again(flown.path(), failed.curves, [](const std::string& line) { FAIL() << line; });
   ASSERT_TRUE(test::Until([&] { return failed.Newest()["rows"].size() > 166; }));
   EXPECT_THAT(failed.Newest()["error"].get<std::string>(), HasSubstr("own.py:2: metric wrong: KeyError: 'speed'"));
+  EXPECT_EQ(failed.lines, std::vector<std::string>{"warning: --metric: own.py:2: metric wrong: KeyError: 'speed'"})
+      << "once";
 }
 
 }  // namespace
