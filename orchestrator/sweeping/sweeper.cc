@@ -114,6 +114,14 @@ std::vector<std::optional<double>> NumbersOf(const std::string& column, const Sw
   return numbers;
 }
 
+/// Throws ConfigError if a search is for a metric that the user's file, which there is, does not have.
+void CheckOwn(const std::string& metric, const std::vector<PythonMetric>& own) {
+  if (own.empty() || metric.empty() || std::ranges::find(own, metric, &PythonMetric::name) != own.end()) return;
+  std::string names;
+  for (const PythonMetric& known : own) names += (names.empty() ? "" : ", ") + known.name;
+  throw ConfigError({fmt::format("--metric: expected one of the metrics of the file ({}), got '{}'", names, metric)});
+}
+
 /// Throws ConfigError if the table is one of this sweep by another build: its rows may differ.
 void CheckBuild(const std::optional<SweepIdentity>& begun, const SweepIdentity& ours, const std::string& out) {
   if (!begun || begun->build == ours.build) return;
@@ -161,6 +169,7 @@ Sweeper::Outcome Sweeper::Do(const Options& options, bool fly, StopSignal& stop)
     identity.law_names.assign(names.begin(), names.end());
     identity.own = checks.Metrics(SweepColumns(plan_, SweepMetricNames(identity.law_names)));
     const std::vector<std::string> metrics = identity.Metrics();
+    if (is_search) CheckOwn(options.metric, identity.own);
     outcome.column = options.metric.empty() && !identity.own.empty() ? identity.own.front().name : options.metric;
     if (!outcome.column.empty()) CheckColumn(is_search ? "--metric" : "--plot", outcome.column, metrics);
     if (strict && !plan_.IsOfTable()) checks.CheckTrials();

@@ -96,7 +96,7 @@ int Run(TuneArgs args) {
   Console console(args.quiet);
   const auto watch = [&](std::size_t rows, std::size_t of, std::optional<double> best) {
     console.Progress(static_cast<double>(rows) / static_cast<double>(of),
-                     fmt::format("{} of {} runs | best so far {}", rows, of, NumberText(best)));
+                     fmt::format("{} of {} runs{}", rows, of, best ? " | best so far " + NumberText(best) : ""));
   };
   const Tuner::Outcome outcome =
       tuner.Search({.jobs = args.jobs, .out = args.out, .force = args.force, .watch = watch}, stop);

@@ -163,6 +163,11 @@ TEST_F(TuneTest, RefusesWhatItCannotSearch) {
     EXPECT_EQ(ran.exit_code, 2) << more;
     EXPECT_THAT(ran.output, HasSubstr(message));
   }
+  WriteFile(Own(),
+            "METRICS = ['a', 'b']\ndef a(run):\n    return 1\ndef b(run):\n    return 2\ndef c(run):\n    return 3\n");
+  const Ran ran = Tune("--metric " + Own() + ":c --budget 3 --random law.beta=1:2");
+  EXPECT_EQ(ran.exit_code, 2);
+  EXPECT_THAT(ran.output, HasSubstr("--metric: expected one of the metrics of the file (a, b), got 'c'"));
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
