@@ -54,7 +54,11 @@ bool Holds(double value, Relation relation, double number) {
 struct Failing {
   const Assertion& claim;
 
-  std::string operator()(std::monostate) const { return "the run has no value of it"; }
+  std::string operator()(std::monostate) const {
+    return claim.name.find(".predicted.") != std::string::npos
+               ? "theory predicts no value of it"
+               : "the run has no value of it: it has not happened by the end, or not for good";
+  }
   std::string operator()(bool value) const {
     return Holds(value, claim.relation, claim.number) ? "" : value ? "it is true" : "it is false";
   }
@@ -63,7 +67,7 @@ struct Failing {
     return Holds(value, claim.relation, claim.number) ? "" : fmt::format("it is {:.6g}", value);
   }
   std::string operator()(const FigureValues& values) const {
-    if (values.empty()) return "the run has no value of it";
+    if (values.empty()) return (*this)(std::monostate());
     for (std::size_t k = 0; k < values.size(); ++k) {
       const std::string why = values[k] ? (*this)(*values[k]) : (*this)(std::monostate());
       if (!why.empty()) return fmt::format("value {} of {}: {}", k + 1, values.size(), why);

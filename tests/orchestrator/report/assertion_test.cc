@@ -63,9 +63,11 @@ TEST(Assertion, HoldsOrSaysWhatTheFigureIs) {
     EXPECT_EQ(WhyNot(text), "it is 9.5") << text;
   EXPECT_EQ(WhyNot("safety.collisions == 0"), "it is 2");
   EXPECT_EQ(WhyNot("wire.matches_graph == false"), "it is true");
-  EXPECT_EQ(WhyNot("consensus.rate_per_s > 0"), "the run has no value of it");
+  EXPECT_EQ(WhyNot("consensus.rate_per_s > 0"),
+            "the run has no value of it: it has not happened by the end, or not for good");
   EXPECT_EQ(WhyNot("laws.event_triggered.messages < 5"), "value 2 of 2: it is 6");
-  EXPECT_EQ(WhyNot("laws.waypoint.arrival_time_s < 5"), "value 3 of 3: the run has no value of it");
+  EXPECT_EQ(WhyNot("laws.waypoint.arrival_time_s < 5"),
+            "value 3 of 3: the run has no value of it: it has not happened by the end, or not for good");
   EXPECT_EQ(WhyNot("failure == 0"), "the run has no number of it: it broke");
   EXPECT_EQ(WhyNot("links.edges == 0"), "it is a table");
   EXPECT_EQ(WhyNot("links.sent == 0"), "the run has no such figure");
