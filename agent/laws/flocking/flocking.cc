@@ -2,16 +2,16 @@
 // (and Algorithm 1, with c1_gamma = c2_gamma = 0):
 //   a_i = sum_j w_ij [ c1_alpha phi_alpha(|p_j - p_i|_sigma) n_ij
 //                      + c2_alpha rho_h(|p_j - p_i|_sigma / r_alpha) (v_j - v_i) ]
-//         + sum_k [ c1_beta phi_beta(|q_k - p_i|_sigma) n_ik + c2_beta rho_h(|q_k - p_i|_sigma / d_beta) (p_k - v_i) ]
-//         - c1_gamma (p_i - q_r) - c2_gamma (v_i - p_r)
+//         + sum_k [ c1_beta phi_beta(|p_k - p_i|_sigma) n_ik + c2_beta rho_h(|p_k - p_i|_sigma / d_beta) (v_k - v_i) ]
+//         - c1_gamma (p_i - p_r) - c2_gamma (v_i - v_r)
 //   |z|_sigma = (sqrt(1 + epsilon |z|^2) - 1) / epsilon,  n_ij = (p_j - p_i) / sqrt(1 + epsilon |p_j - p_i|^2)
 // Alpha agents keep the distance d from each other, and do nothing to each other from the range r = range_ratio d on.
 // phi_alpha = rho_h phi, where rho_h fades from 1 to 0 between the share `bump` of the range and the range, and phi is
-// the paper's with a = b = 1. The gamma agent (q_r, p_r) has a constant velocity. Beta agents (q_k, p_k)
+// the paper's with a = b = 1. The gamma agent (p_r, v_r) has a constant velocity. Beta agents (p_k, v_k)
 // are on the obstacles within sensors.range_m, of which the law sees the nearest points and knows the shapes
 // (beta_agents.h).
 // On an undirected graph and away from obstacles the forces between agents cancel: the centre of mass obeys
-//   x'' = -c1_gamma (x - q_r) - c2_gamma (x' - p_r)
+//   x'' = -c1_gamma (x - p_r) - c2_gamma (x' - v_r)
 // and the structural energy about it, potentials and kinetic energy, never grows: agents end at one velocity.
 #include "agent/laws/flocking/flocking.h"
 
@@ -123,12 +123,12 @@ LawEntry FlockingLaw() {
       .summary = "agents fly as a flock: near each other, at one velocity, with a target or without, around obstacles",
       .equation =
           "a_i = sum_j a_ij [c1_alpha phi_alpha(|p_j - p_i|_s) n_ij + c2_alpha rho_h(|p_j - p_i|_s / r_alpha) "
-          "(v_j - v_i)] + sum_k [c1_beta phi_beta(|q_k - p_i|_s) n_ik + c2_beta rho_h(|q_k - p_i|_s / d_beta) "
-          "(p_k - v_i)] - c1_gamma (p_i - q_r) - c2_gamma (v_i - p_r)",
+          "(v_j - v_i)] + sum_k [c1_beta phi_beta(|p_k - p_i|_s) n_ik + c2_beta rho_h(|p_k - p_i|_s / d_beta) "
+          "(v_k - v_i)] - c1_gamma (p_i - p_r) - c2_gamma (v_i - v_r)",
       .tex =
           R"(a_i = \sum_j a_{ij} \bigl[ c_1^\alpha\, \phi_\alpha(\lvert p_j - p_i \rvert_s)\, n_{ij} + c_2^\alpha\, \rho_h(\lvert p_j - p_i \rvert_s / r_\alpha)\, (v_j - v_i) \bigr] \\
-\quad {} + \sum_k \bigl[ c_1^\beta\, \phi_\beta(\lvert q_k - p_i \rvert_s)\, n_{ik} + c_2^\beta\, \rho_h(\lvert q_k - p_i \rvert_s / d_\beta)\, (p_k - v_i) \bigr] \\
-\quad {} - c_1^\gamma (p_i - q_r) - c_2^\gamma (v_i - p_r))",
+\quad {} + \sum_k \bigl[ c_1^\beta\, \phi_\beta(\lvert p_k - p_i \rvert_s)\, n_{ik} + c_2^\beta\, \rho_h(\lvert p_k - p_i \rvert_s / d_\beta)\, (v_k - v_i) \bigr] \\
+\quad {} - c_1^\gamma (p_i - p_r) - c_2^\gamma (v_i - v_r))",
       .symbols = {{"c1_alpha", R"(c_1^\alpha)"},
                   {"c2_alpha", R"(c_2^\alpha)"},
                   {"c1_beta", R"(c_1^\beta)"},
@@ -144,13 +144,13 @@ LawEntry FlockingLaw() {
           "+ "
           "s^2). rho_h is 1 up to the share bump, 0 from 1 on, and (1 + cos(pi (s - bump) / (1 - bump))) / 2 between. "
           "phi_beta(s) = rho_h(s / d_beta) (phi(s - d_beta) - 1), where rho_h has the share 0.9.\n"
-          "Distances between agents are along law.axes. The gamma agent is at q_r = target_m + t "
-          "target_velocity_m_per_s, with the constant velocity p_r.\n"
-          "q_k is the nearest point, in space, of each obstacle that is seen, within sensors.range_m; p_k is how fast "
+          "Distances between agents are along law.axes. The gamma agent is at p_r = target_m + t "
+          "target_velocity_m_per_s, with the constant velocity v_r.\n"
+          "p_k is the nearest point, in space, of each obstacle that is seen, within sensors.range_m; v_k is how fast "
           "that point moves as the agent flies past. Beta agents at least obstacle_distance_m away do nothing.",
       .theory =
-          "undirected, no obstacle in sight: the centre of mass obeys x'' = -c1_gamma (x - q_r) - c2_gamma (x' - "
-          "p_r); the structural energy about it never grows, but for what holding a command costs; agents end at one "
+          "undirected, no obstacle in sight: the centre of mass obeys x'' = -c1_gamma (x - p_r) - c2_gamma (x' - "
+          "v_r); the structural energy about it never grows, but for what holding a command costs; agents end at one "
           "velocity",
       .source =
           "Olfati-Saber, Flocking for multi-agent dynamic systems: algorithms and theory, IEEE Trans. Autom. "

@@ -16,7 +16,7 @@ struct FlockParams final : LawParams {
   Eigen::Vector3d target_W = Eigen::Vector3d::Zero();           ///< where the gamma agent is at the time 0
   Eigen::Vector3d target_velocity_W = Eigen::Vector3d::Zero();  ///< it keeps this velocity
 
-  /// q_r at simulated time `t_s`.
+  /// p_r at simulated time `t_s`.
   Eigen::Vector3d Target_W(double t_s) const { return target_W + t_s * target_velocity_W; }
 };
 

@@ -143,8 +143,8 @@ LawEntry TrajectoryLaw() {
               "A lone agent without offsets_m and shape has d_i = 0. Samples are joined by a cubic spline; the "
               "reference rests at the first one before its time, and at the last one after it.",
           .theory =
-              "with feed-forward the error goes to 0: e'' + d_gain e' + p_gain e = 0; without, an oscillation w of r "
-              "comes out times (p + j d w) / (p - w^2 + j d w), late",
+              "with feed-forward the error goes to 0: e'' + d_gain e' + p_gain e = 0; without, an oscillation of r at "
+              "omega comes out times (p_gain + j d_gain omega) / (p_gain - omega^2 + j d_gain omega), late",
           .source =
               "Mellinger & Kumar, Minimum snap trajectory generation and control for quadrotors, ICRA 2011; Lee, Leok "
               "& McClamroch, Geometric tracking control of a quadrotor UAV on SE(3), CDC 2010",

@@ -308,17 +308,17 @@ Vector3d ByFlocking(const Now& now, std::size_t i) {
     return z < h ? 1 : z >= 1 ? 0 : (1 + std::cos(std::numbers::pi * (z - h) / (1 - h))) / 2;
   };
   const auto phi = [](double z) { return z / std::sqrt(1 + z * z); };
-  const Vector3d q_r = Vector3d(4, 1, 0) + now.t_s * Vector3d(0.2, 0.1, 0);
+  const Vector3d p_r = Vector3d(4, 1, 0) + now.t_s * Vector3d(0.2, 0.1, 0);
   // The beta agent on a sphere about (1, 1, 5) of the radius 0.5 m.
   const Vector3d from_centre = now.p[i] - Vector3d(1, 1, 5), normal = from_centre.normalized();
   const Vector3d z_k = 0.5 * normal - from_centre;
-  const Vector3d p_k = 0.5 / from_centre.norm() * (now.v[i] - normal * normal.dot(now.v[i]));
+  const Vector3d v_k = 0.5 / from_centre.norm() * (now.v[i] - normal * normal.dot(now.v[i]));
   const double s_k = norm(z_k.norm()), d_beta = norm(2.5);
   const Vector3d beta =
       z_k.norm() >= 2.5
           ? Vector3d::Zero().eval()
           : (2 * rho(s_k / d_beta, 0.9) * (phi(s_k - d_beta) - 1) * z_k / std::sqrt(1 + epsilon * z_k.squaredNorm()) +
-             0.7 * rho(s_k / d_beta, 0.9) * (p_k - now.v[i]))
+             0.7 * rho(s_k / d_beta, 0.9) * (v_k - now.v[i]))
                 .eval();
   return Sum(now, i,
              [&](std::size_t j) -> Vector3d {
@@ -328,7 +328,7 @@ Vector3d ByFlocking(const Now& now, std::size_t i) {
                return 1.2 * rho(share, bump) * phi(s - norm(distance)) * n +
                       0.8 * rho(share, bump) * (now.v[j] - now.v[i]);
              }) -
-         0.3 * (now.p[i] - q_r) - 0.6 * (now.v[i] - Vector3d(0.2, 0.1, 0)) + beta;
+         0.3 * (now.p[i] - p_r) - 0.6 * (now.v[i] - Vector3d(0.2, 0.1, 0)) + beta;
 }
 
 Vector3d ByAvoidance(const Now& now, std::size_t i) {  // balls of 0.1 m; a sphere of the radius 0.5 m
@@ -457,8 +457,8 @@ std::vector<Equation> Equations() {
        kSingle + kWeighted + "law = { gain = 0.7, f = 1 }", ByResilient},
       {"flocking", "flocking",
        "a_i = sum_j a_ij [c1_alpha phi_alpha(|p_j - p_i|_s) n_ij + c2_alpha rho_h(|p_j - p_i|_s / r_alpha) (v_j - "
-       "v_i)] + sum_k [c1_beta phi_beta(|q_k - p_i|_s) n_ik + c2_beta rho_h(|q_k - p_i|_s / d_beta) (p_k - v_i)] - "
-       "c1_gamma (p_i - q_r) - c2_gamma (v_i - p_r)",
+       "v_i)] + sum_k [c1_beta phi_beta(|p_k - p_i|_s) n_ik + c2_beta rho_h(|p_k - p_i|_s / d_beta) (v_k - v_i)] - "
+       "c1_gamma (p_i - p_r) - c2_gamma (v_i - v_r)",
        kDouble + kWeighted + kSphere +
            "law = { distance_m = 2, range_ratio = 1.5, epsilon = 0.2, bump = 0.3, c1_alpha = 1.2, c2_alpha = 0.8, "
            "c1_gamma = 0.3, c2_gamma = 0.6, c1_beta = 2, c2_beta = 0.7, obstacle_distance_m = 2.5, target_m = [4, 1, "
