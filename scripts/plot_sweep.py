@@ -399,6 +399,32 @@ def draw(table):
     return Curves(table, key, series).draw()
 
 
+def draw_files(options, read, draw, has_values, of):
+    """Reads what is drawn, and draws it in each of the formats. `of`: what a value belongs to, in words. Returns the exit
+    code."""
+    try:
+        formats = figure_style.formats(options.format)
+    except ValueError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    try:
+        table = read(options)
+    except TableError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        print(f"error: {options.table}: {getattr(error, 'strerror', None) or error}", file=sys.stderr)
+        return 1
+    if not has_values(table):
+        print(f"error: {options.table}: no {of} has a {options.column}", file=sys.stderr)
+        return 1
+    figure_style.use(options.size)
+    for name in formats:
+        figure = draw(table)  # anew: what was laid out before would change the bytes
+        figure_style.save(figure, pathlib.Path(options.picture).with_suffix("." + name))
+    return 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("table")
@@ -413,27 +439,7 @@ def main():
     options = parser.parse_intermixed_args()
     if len(options.keys) > 2:
         parser.error("expected at most two keys")
-    try:
-        formats = figure_style.formats(options.format)
-    except ValueError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    try:
-        table = Table(options)
-    except TableError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        print(f"error: {options.table}: {getattr(error, 'strerror', None) or error}", file=sys.stderr)
-        return 1
-    if not table.good:
-        print(f"error: {options.table}: no run has a {options.column}", file=sys.stderr)
-        return 1
-    figure_style.use(options.size)
-    for name in formats:
-        figure = draw(table)  # anew: what was laid out before would change the bytes
-        figure_style.save(figure, pathlib.Path(options.picture).with_suffix("." + name))
-    return 0
+    return draw_files(options, Table, draw, lambda table: table.good, "run")
 
 
 if __name__ == "__main__":

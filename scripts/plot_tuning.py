@@ -7,8 +7,6 @@ none, is marked at the edge. Exit codes: 0 done, 1 nothing to draw, 2 wrong use.
 """
 
 import argparse
-import csv
-import pathlib
 import sys
 
 sys.dont_write_bytecode = True  # the folder of the scripts may be read-only
@@ -20,7 +18,7 @@ import matplotlib.ticker
 import numpy as np
 import plain
 from figure_style import OKABE_ITO, size
-from plot_sweep import FAILED, TableError, is_wide, number, rows_of
+from plot_sweep import FAILED, draw_files, is_wide, number, rows_of
 
 KEYS_MAX = 5  # panels of keys
 EDGE = 0.02  # where candidates without a value are marked, as a part of the panel's height
@@ -141,27 +139,7 @@ def main():
     parser.add_argument("--size", choices=figure_style.SIZES, default="screen")
     parser.add_argument("--format", default="png", metavar="LIST", help="png, pdf, svg, with commas between")
     options = parser.parse_intermixed_args()
-    try:
-        formats = figure_style.formats(options.format)
-    except ValueError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    try:
-        search = Search(options)
-    except TableError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        print(f"error: {options.table}: {getattr(error, 'strerror', None) or error}", file=sys.stderr)
-        return 1
-    if search.missing().all():
-        print(f"error: {options.table}: no candidate has a {options.column}", file=sys.stderr)
-        return 1
-    figure_style.use(options.size)
-    for name in formats:
-        figure = draw(search)  # anew: what was laid out before would change the bytes
-        figure_style.save(figure, pathlib.Path(options.picture).with_suffix("." + name))
-    return 0
+    return draw_files(options, Search, draw, lambda search: not search.missing().all(), "candidate")
 
 
 if __name__ == "__main__":

@@ -122,6 +122,10 @@ TEST_F(TuneTest, TakesARunWithoutAValueForTheWorst) {
   EXPECT_THAT(
       ran.output,
       HasSubstr("error: tune: expected a value of consensus.settling_time_s for some candidate, got none of 2"));
+  const Ran drawn = Shell(MASCOT_SOURCE_DIR "/scripts/plot_tuning.py " + out_ + " " + folder_.File("x.png") +
+                          " consensus.settling_time_s law.p_gain");
+  EXPECT_EQ(drawn.exit_code, 1);
+  EXPECT_EQ(drawn.output, "error: " + out_ + ": no candidate has a consensus.settling_time_s\n");
 }
 
 TEST_F(TuneTest, RefusesTheTableOfAnotherSearch) {
