@@ -150,9 +150,11 @@ void FuzzRowWindow(Events& events) {
 void FuzzRowAssembler(Events& events) {
   constexpr int kRate = 100;
   const std::int64_t ticks = events.ConsumeIntegralInRange<std::int64_t>(1, 10);
+  const RecordedTicks recorded(ticks, 1 + ticks % 3);
   std::int64_t rows = 0;
-  RowAssembler assembler({"fuzz.mcap", 2, kRate, ticks, events.ConsumeBool()},
-                         [&](const Row& row) { Require(row.tick == rows++, "a row twice, or left out"); });
+  RowAssembler assembler({"fuzz.mcap", 2, kRate, recorded, events.ConsumeBool()}, [&](const Row& row) {
+    Require(row.tick == recorded.TickOf(rows++), "a row twice, or left out");
+  });
   const Topic topics[] = {Topic::Command(1), Topic::State(1), Topic::Command(2), Topic::State(2)};
   for (std::size_t k = 0; k < std::size(topics); ++k) assembler.AddChannel(static_cast<std::uint16_t>(k), topics[k]);
   McapContents::Message message;
@@ -160,12 +162,13 @@ void FuzzRowAssembler(Events& events) {
   try {
     while (events.remaining_bytes() > 0) {
       message.channel = events.ConsumeIntegralInRange<std::uint16_t>(0, std::size(topics));
-      message.log_time = events.ConsumeBool() ? StampNs(rows + events.ConsumeIntegralInRange<int>(0, 1), kRate)
-                                              : events.ConsumeIntegral<std::uint64_t>();
+      message.log_time = events.ConsumeBool()
+                             ? StampNs(recorded.TickOf(rows + events.ConsumeIntegralInRange<int>(0, 1)), kRate)
+                             : events.ConsumeIntegral<std::uint64_t>();
       assembler.Take(message);
     }
     assembler.Finish();
-    Require(rows == ticks, "ended with rows missing");
+    Require(rows == recorded.rows(), "ended with rows missing");
   } catch (const std::runtime_error&) {  // a tick is missing
   }
 }
