@@ -7,6 +7,7 @@
 
 #include "orchestrator/live/recorded/metric_reader.h"
 #include "tests/orchestrator/recording/flown.h"
+#include "tests/support/waits.h"
 
 namespace mascot {
 namespace {
