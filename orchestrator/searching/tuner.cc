@@ -21,17 +21,6 @@
 namespace mascot {
 namespace {
 
-std::string_view NameOf(OverSeeds how) {
-  switch (how) {
-    case OverSeeds::kMedian:
-      return "median";
-    case OverSeeds::kWorst:
-      return "worst";
-    default:
-      return "mean";
-  }
-}
-
 /// Throws ConfigError for a key whose values no search may choose.
 void CheckSearched(const std::string& key) {
   if (key == kSeedKey)
@@ -148,7 +137,7 @@ std::optional<Candidate> Tuner::InTheFile() const {
 std::string Tuner::Text(const std::string& optimizer) const {
   const std::string column = setting_.metric.empty() ? "the first metric" : setting_.metric;
   return fmt::format("{} {}, {} over seeds, {}, batches of {}, optimiser's seed {}, {}",
-                     setting_.maximize ? "largest" : "smallest", column, NameOf(setting_.over_seeds),
+                     setting_.maximize ? "largest" : "smallest", column, kOverSeeds.Name(setting_.over_seeds),
                      fmt::join(options_, ", "), setting_.batch, setting_.seed, optimizer);
 }
 
@@ -204,10 +193,9 @@ class Tuner::Course {
       for (const SearchedKey& key : tuner_.keys_)
         for (const Override& set : point.overrides)
           if (set.key == key.range.key) candidate.push_back(set.value);
-      begun_.push_back(std::move(candidate));
+      RowOf(candidate);
     }
-    for (const Candidate& candidate : begun_) RowOf(candidate);
-    Fly(begun_.size());
+    Fly(outcome_.rows.size());
     next_ = 0;
   }
 
@@ -277,7 +265,6 @@ class Tuner::Course {
   Optimizer optimizer_;
   const std::string search_;
   Outcome outcome_;
-  std::vector<Candidate> begun_;
   std::map<Candidate, std::size_t> row_of_;
   std::size_t flown_ = 0;  // rows whose figures are known
   std::size_t next_ = 0;   // the row of the next new candidate

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/enum_names.h"
 #include "orchestrator/searching/optimizer.h"
 #include "orchestrator/sweeping/plan/plan.h"
 #include "orchestrator/sweeping/sweeper.h"
@@ -17,6 +18,9 @@ namespace mascot {
 
 /// How the numbers that a candidate has with several seeds become the one by which it is judged.
 enum class OverSeeds { kMean, kMedian, kWorst };
+inline constexpr EnumNames<OverSeeds, 3> kOverSeeds({{OverSeeds::kMean, "mean"},
+                                                     {OverSeeds::kMedian, "median"},
+                                                     {OverSeeds::kWorst, "worst"}});
 
 /// Searches for values of keys with which a figure of the run is smallest or largest: an optimiser proposes candidates,
 /// batch by batch, the runs of a batch are flown as those of a sweep, and its table grows by them. The candidates
@@ -66,7 +70,7 @@ class Tuner {
   Outcome Search(const Options& options, StopSignal& stop) const;
   /// The keys whose values are chosen.
   std::vector<std::string> keys() const;
-  /// Those of them of which the logarithm is chosen.
+  /// The keys whose logarithms are chosen.
   std::vector<std::string> log_keys() const;
   /// The sweep whose runs are those of the candidates `rows`.
   SweepPlan PlanOf(std::span<const Candidate> rows) const;

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,9 +33,6 @@ struct TuneArgs {
   int jobs = 0;
   bool force = false, quiet = false;
 };
-
-const std::map<std::string, OverSeeds> kOverSeeds{
-    {"mean", OverSeeds::kMean}, {"median", OverSeeds::kMedian}, {"worst", OverSeeds::kWorst}};
 
 /// Takes --metric apart: COLUMN, FILE.py or FILE.py:NAME.
 void SetMetric(const std::string& word, Tuner::Setting& setting) {
@@ -90,7 +86,7 @@ int Run(TuneArgs args) {
   StopSignal stop;
   std::optional<EndsAtOnce> before_the_search(stop);
   SetMetric(args.metric, args.setting);
-  args.setting.over_seeds = kOverSeeds.at(args.over_seeds);
+  args.setting.over_seeds = kOverSeeds.Value(args.over_seeds);
   const Tuner tuner(NameOfInput(args.config), ReadInput(args.config), args.setting);
   before_the_search.reset();
   Console console(args.quiet);
@@ -149,7 +145,7 @@ std::function<int()> SetUpTune(CLI::App& command) {
   command.add_option("--seeds", setting.seeds, "fly each candidate with each of these seeds: A..B or A,B,...")
       ->type_name("SEEDS");
   command.add_option("--over-seeds", args->over_seeds, "what counts of the seeds: mean, median or worst (mean)")
-      ->check(OneOf({"mean", "median", "worst"}))
+      ->check(OneOf({kOverSeeds.names().begin(), kOverSeeds.names().end()}))
       ->type_name("HOW");
   command.add_flag("--maximize", setting.maximize, "the metric shall be largest");
   command

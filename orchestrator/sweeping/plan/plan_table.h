@@ -16,8 +16,8 @@ struct PlanTable {
   std::string name;                    ///< of the file, as messages say it
   std::vector<std::string> keys = {};  ///< dotted: the column names
   std::vector<Row> rows = {};
-  /// Of the keys: the option that gave their values, as typed; messages about a value name it. Empty: they stand in the
-  /// file.
+  /// For each key the option that gave its values, as typed, which messages about a value name. Empty: the values stand
+  /// in the file.
   std::vector<std::string> options = {};
 };
 
