@@ -46,13 +46,11 @@ void SetCommon(Qos& qos, const TopicTraits& traits, int depth, Redelivery redeli
 /// readers, hundreds in the recorder's process.
 std::int16_t ReaderNumber(const Topic& topic) {
   constexpr int kFirst = 256;    // smaller ids are those that Fast DDS picks
-  constexpr int kAgents = 6500;  // six kinds of topics have agents, and are the first of TopicKind; odom has no reader
-  static_assert(static_cast<int>(TopicKind::kState) == 5 && static_cast<int>(TopicKind::kOdom) == 4);
-  static_assert(kFirst + 5 * kAgents < 32768);
+  constexpr int kAgents = 5400;  // six kinds of topics have agents, and are the first of TopicKind
+  static_assert(static_cast<int>(TopicKind::kState) == 5 && kFirst + 6 * kAgents < 32768);
   const bool of_agents = topic.agent > 0 && topic.agent < kAgents;
   if (!of_agents) return -1;
-  const int kind = topic.kind == TopicKind::kState ? 4 : static_cast<int>(topic.kind);
-  return static_cast<std::int16_t>(kFirst + kAgents * kind + topic.agent);
+  return static_cast<std::int16_t>(kFirst + kAgents * static_cast<int>(topic.kind) + topic.agent);
 }
 
 dds::DataReaderQos MakeReaderQos(const Topic& topic, int depth, Redelivery redelivery) {
