@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -25,6 +24,7 @@
 #include "orchestrator/verbs/law_trial.h"
 #include "orchestrator/verbs/verb.h"
 #include "system/interruptions.h"
+#include "system/private_folder.h"
 
 namespace mascot {
 namespace {
@@ -35,25 +35,6 @@ struct VerifyArgs {
   std::string run;
   EngineArgs engine{.name = kInProcess, .threads = {}};
   bool uses_hosts = false;
-};
-
-/// A folder for the logs of the second flight, which are not kept.
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_((fs::temp_directory_path() / "mascot-verify-XXXXXX").string()) {
-    if (::mkdtemp(path_.data()) == nullptr) throw std::runtime_error("cannot make a folder " + path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
 };
 
 /// A recording that can be verified.
@@ -210,8 +191,8 @@ int Verify(const VerifyArgs& args) {
   args.engine.Refuse(experiment);
   PrintChanges(subject, experiment);
   before_the_run.reset();
-  const TemporaryFolder temporary;
-  const RunFolder folder(temporary.path(), experiment, /*force=*/false);
+  const PrivateFolder temporary;  // for the logs of the second flight, which are not kept
+  const RunFolder folder((temporary.path() / "run").string(), experiment, /*force=*/false);
   Console console(/*quiet=*/true);
   Comparison comparison(subject.file, subject.plan, TicksIn(subject.contents, subject.plan), experiment);
   std::vector<RowSink*> sinks;
