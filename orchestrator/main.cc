@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <iostream>
 #include <string>
 #include <string_view>
@@ -86,7 +85,7 @@ int Main(int argc, char** argv) {
     return kExitUsage;
   }
   if (argv[1] == std::string_view("help")) return Help(app, argc > 2 ? argv[2] : "");
-  if (argc == 3 && argv[1] == std::string_view(kTrialFlight)) return FlyTrial(std::atoi(argv[2]));
+  if (argc == 3 && argv[1] == std::string_view(kTrialFlight)) return FlyTrial(argv[2]);
   if (argv[1][0] != '-' && !IsVerb(argv[1])) return UnknownVerb(argv[1]);
   try {
     app.parse(argc, argv);

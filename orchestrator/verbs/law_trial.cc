@@ -16,6 +16,7 @@
 #include "agent/python/python.h"
 #include "agent/python/shared_random.h"
 #include "base/after_last.h"
+#include "base/number.h"
 #include "base/utf8.h"
 #include "experiment/live_experiment.h"
 #include "orchestrator/team/ideal_team.h"
@@ -172,12 +173,14 @@ LawTrial TryLaws(const Experiment& experiment) {
   return trial;
 }
 
-int FlyTrial(int descriptor) {
+int FlyTrial(std::string_view descriptor) {
+  const std::optional<int> to = NumberFrom<int>(descriptor);
+  if (!to) return kExitUsage;
   const std::string text = ReadToEnd(0);
   const SuppressedPythonOutput suppressed;
   const Experiment experiment =
       LoadExperiment(Section::FromText(text, "the resolved experiment"), "trial", /*checked=*/true);
-  return WriteAll(descriptor, TrialFlight(experiment).Fly()) ? kExitDone : kExitFailed;
+  return WriteAll(*to, TrialFlight(experiment).Fly()) ? kExitDone : kExitFailed;
 }
 
 }  // namespace mascot

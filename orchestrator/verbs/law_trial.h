@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiment/experiment.h"
@@ -24,7 +25,7 @@ LawTrial TryLaws(const Experiment& experiment);
 /// The argument by which this program, as another process, flies such a beginning.
 inline constexpr const char* kTrialFlight = "--trial-flight";
 /// What it then does: flies the resolved experiment on standard input, and writes what TryLaws() wants to know to the
-/// descriptor. Returns the exit code.
-int FlyTrial(int descriptor);
+/// descriptor of this number. Returns the exit code.
+int FlyTrial(std::string_view descriptor);
 
 }  // namespace mascot
