@@ -61,9 +61,8 @@ WaypointParams ReadWaypoints(Section& law, const std::string& prefix) {
 }
 
 std::map<int, WaypointParams> ReadWaypointsOfAgents(Section& law, std::span<const AgentConfig> agents) {
-  const bool is_each = std::ranges::any_of(agents, [](const AgentConfig& agent) { return !agent.waypoints_W.empty(); });
   if (law.Has("waypoints_m")) return {{0, ReadWaypoints(law, "")}};
-  if (!is_each)
+  if (std::ranges::all_of(agents, [](const AgentConfig& agent) { return agent.waypoints_W.empty(); }))
     law.Fail("waypoints_m", "expected targets of all agents here, or of each in agents.waypoints_m, got none");
   std::map<int, WaypointParams> flights{{0, ReadFlight(law, "")}};
   for (const AgentConfig& agent : agents) {

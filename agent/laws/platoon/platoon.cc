@@ -132,8 +132,7 @@ LawEntry PlatoonLaw() {
           "from one vehicle to the next swings grow by Gamma(s) = (1/H) (G K + D) / (1 + G K), H = headway s + 1, G = "
           "exp(-phi s) / (s^2 (tau s + 1)), K = p_gain + d_gain s + dd_gain s^2, D = exp(-theta s), or 0 without "
           "feed_forward: the string is stable iff |Gamma(j omega)| <= 1 for all omega; with p_gain = 0.2, d_gain = "
-          "0.7, "
-          "tau = 0.1, phi = 0 from a headway of 3.16 s on, or of 0.67 s with messages and theta = 0.15",
+          "0.7, tau = 0.1, phi = 0 from a headway of 3.16 s on, or of 0.67 s with messages and theta = 0.15",
       .source =
           "Ploeg, Scheepers, van Nunen, van de Wouw & Nijmeijer, Design and experimental evaluation of cooperative "
           "adaptive cruise control, IEEE Conf. Intelligent Transportation Systems 2011; Ploeg, van de Wouw & "
