@@ -12,7 +12,6 @@
 namespace mascot {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
