@@ -38,7 +38,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 # Depends: what the programs link, the page's libraries, and NumPy for laws in Python and for pictures.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, python3-numpy, libjs-three, libjs-dygraphs")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS python3-matplotlib python3-optuna)  # pictures; tune
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-optuna")  # pictures; tune
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg, bash-completion, cmake, g++, libeigen3-dev")  # films; laws in C++
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

@@ -337,6 +337,16 @@ class Age(unittest.TestCase):
         self.assertIn(PROGRAM, packaged_files())
 
 
+class Control(unittest.TestCase):
+    def test_its_relations_to_other_packages_are_written_as_dpkg_reads_them(self):
+        text = (BUILD / "CPackConfig.cmake").read_text()
+        relations = re.findall(r'set\(CPACK_DEBIAN_PACKAGE_(DEPENDS|RECOMMENDS|SUGGESTS) "(.*)"\)', text)
+        self.assertEqual(sorted(field for field, _ in relations), ["DEPENDS", "RECOMMENDS", "SUGGESTS"])
+        for field, names in relations:
+            with self.subTest(field=field):
+                self.assertRegex(names, r"^[a-z0-9][a-z0-9+.-]+(, [a-z0-9][a-z0-9+.-]+)*$")
+
+
 PACKAGES = sorted((ROOT / "build/package").glob("*.deb"))
 NO_PACKAGE = why_old(PACKAGES[0], packaged_files()) if PACKAGES else "there is none"
 
