@@ -48,7 +48,8 @@ Agent::Agent(const Experiment& experiment, int id)
       v_integrated_W_(config_->v_W) {}
 
 void Agent::Adopt(std::shared_ptr<const Experiment> now) {
-  const bool begins = now->agent(id_).law.since != config_->law.since;
+  const bool is_fresh = now->agent(id_).faults.restarted != config_->faults.restarted;
+  const bool begins = is_fresh || now->agent(id_).law.since != config_->law.since;
   config_ = &now->agent(id_);
   neighbours_.Adopt(*now);
   safety_.Adopt(*now);
@@ -58,7 +59,24 @@ void Agent::Adopt(std::shared_ptr<const Experiment> now) {
   } else {
     law_->Adopt(*config_);
   }
+  if (is_fresh) {
+    sensor_ = OwnSensor(now->sensors, now->control.rate_hz, now->run.seed, id_);
+    faulty_sensor_.reset();
+    has_measured_ = false;
+    is_restarted_ = true;
+    message_ = {};
+  }
+  AdoptSensorFault(*now);
   now_ = std::move(now);  // the last one ends here: nothing refers to it any more
+}
+
+void Agent::AdoptSensorFault(const Experiment& now) {
+  const PartFault* fault = config_->faults.Of(FaultPart::kSensor);
+  if (fault == nullptr)
+    faulty_sensor_.reset();
+  else if (!faulty_sensor_ || faulty_sensor_->since() != fault->since)
+    faulty_sensor_.emplace(*fault, now.control.rate_hz, now.run.seed,
+                           has_measured_ ? std::optional(measured_) : std::nullopt);
 }
 
 bool Agent::AsksCodeOfUser() const { return EntryOf(config_->law).is_of_user; }
@@ -134,6 +152,9 @@ void Agent::Integrate(const Eigen::Vector3d& a_W, Command& command) {
 Command Agent::Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
   heard_ = neighbours_.Hear(tick, self, samples);
   measured_ = sensor_.Measure(tick, self);
+  if (faulty_sensor_) measured_ = faulty_sensor_->Measure(tick, measured_);
+  has_measured_ = true;
+  if (std::exchange(is_restarted_, false)) v_integrated_W_ = measured_.v_WB;
   const Eigen::Vector3d w_W = AskLaw(tick, measured_, heard_);
   Command command;
   if (driven_by_ == Wanted::kVelocity && wanted_ == Wanted::kVelocity)

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "agent/controller.h"
+#include "agent/faulty_sensor.h"
 #include "agent/laws/law.h"
 #include "agent/neighbours.h"
 #include "agent/safety.h"
@@ -20,9 +21,12 @@ class Agent {
   Agent(const Experiment& experiment, int id);
 
   int id() const { return id_; }
+  /// Whether the agent answers nothing: its Want() must not be called.
+  bool is_lost() const { return config_->faults.is_lost(); }
   /// Whether the law runs code that a user has written.
   bool AsksCodeOfUser() const;
-  /// Call it when events have changed the experiment: from the next Want() on, the experiment is `now`.
+  /// Call it when events have changed the experiment: from the next Want() on, the experiment is `now`. If a fresh
+  /// agent has taken this one's place, all that this one remembers is forgotten.
   void Adopt(std::shared_ptr<const Experiment> now);
   /// Evaluates the law and its limits: fills in the command's accelerations, velocities and their flags. `self` is the
   /// true motion at `tick`, `samples` are what the agents in graph.HeardBy(id) sent at this tick, in that order. Ticks
@@ -39,6 +43,7 @@ class Agent {
   std::vector<EdgeCount> counts() const { return neighbours_.counts(); }
 
  private:
+  void AdoptSensorFault(const Experiment& now);
   /// What the law wants, checked to be finite; velocity 0 while the law is off (start_s, stop_s).
   Eigen::Vector3d AskLaw(std::int64_t tick, const Motion& measured, std::span<const Heard> heard);
   void LimitAcceleration(const Eigen::Vector3d& a_W, Command& command);
@@ -62,8 +67,11 @@ class Agent {
   Neighbours neighbours_;
   SafetyFilter safety_;
   OwnSensor sensor_;
+  std::optional<FaultySensor> faulty_sensor_;
   RangeSensor ranges_;
   Motion measured_;
+  bool has_measured_ = false;
+  bool is_restarted_ = false;  // and has not answered yet
   std::span<const Heard> heard_;
   Eigen::Vector3d v_integrated_W_;  // for a velocity-driven model whose law wants accelerations
   std::span<const double> message_;

@@ -1,13 +1,12 @@
 #include "agent/link.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
+
+#include "base/ticks.h"
 
 namespace mascot {
 namespace {
-
-constexpr double kRounding = 1e-6;  // tolerance for rounding, in ticks
 
 Dice DiceOf(const LinkConfig& config, std::uint64_t seed, int hearer, int heard) {
   const bool swapped = config.symmetric && hearer > heard;
@@ -22,24 +21,17 @@ Link::Link(const LinkConfig& config, int rate_hz, std::uint64_t seed, int hearer
   Adopt(config);
 }
 
-void Link::Adopt(const LinkConfig& config) {
+void Link::Adopt(const LinkConfig& config, double late_s) {
   config_ = config;
-  hold_ticks_ = HoldTicks(config.hold_s, rate_hz_);
-  const auto places = static_cast<std::size_t>(Ticks(config.delay_s + config.jitter_s, rate_hz_)) + 1;
+  hold_ticks_ = TicksRoundedDown(config.hold_s, rate_hz_);
+  late_ticks_ = TicksRoundedUp(late_s, rate_hz_);
+  const auto places =
+      static_cast<std::size_t>(TicksRoundedUp(config.delay_s + config.jitter_s, rate_hz_) + late_ticks_) + 1;
   if (places <= arrivals_.size()) return;
   std::vector<Packet> arrivals(places);
   for (std::int64_t t = collected_tick_ + 1; t <= collected_tick_ + std::ssize(arrivals_); ++t)
     arrivals[static_cast<std::size_t>(t) % places] = std::move(ArrivalAt(t));
   arrivals_ = std::move(arrivals);
-}
-
-// Rounds up, but a time that is a whole number of ticks except for a rounding error is that number.
-std::int64_t Link::Ticks(double time_s, int rate_hz) {
-  return std::max<std::int64_t>(0, std::llround(std::ceil(time_s * rate_hz - kRounding)));
-}
-
-std::int64_t Link::HoldTicks(double time_s, int rate_hz) {
-  return std::llround(std::floor(time_s * rate_hz + kRounding));
 }
 
 bool Link::Loses(std::int64_t tick) {
@@ -53,8 +45,8 @@ bool Link::Loses(std::int64_t tick) {
 
 std::int64_t Link::DelayTicks(std::int64_t tick) const {
   if (config_.reordering > 0 && dice_.Unit(tick, kReordering) < config_.reordering) return 0;
-  if (config_.jitter_s == 0) return Ticks(config_.delay_s, rate_hz_);
-  return Ticks(config_.delay_s + config_.jitter_s * (2 * dice_.Unit(tick, kDelay) - 1), rate_hz_);
+  if (config_.jitter_s == 0) return TicksRoundedUp(config_.delay_s, rate_hz_);
+  return TicksRoundedUp(config_.delay_s + config_.jitter_s * (2 * dice_.Unit(tick, kDelay) - 1), rate_hz_);
 }
 
 void Link::Send(std::int64_t tick, double weight, const Sample& sample) {
@@ -65,7 +57,7 @@ void Link::Send(std::int64_t tick, double weight, const Sample& sample) {
     ++count_.lost;
     return;
   }
-  Packet& packet = ArrivalAt(tick + DelayTicks(tick));
+  Packet& packet = ArrivalAt(tick + DelayTicks(tick) + late_ticks_);
   if (packet.sent >= 0) ++count_.late;  // the older sample that arrives at the same tick is dropped
   packet.sent = tick;
   packet.weight = weight;

@@ -51,8 +51,8 @@ class Link {
   /// `hearer`, `heard`: ids; `heard` sends.
   Link(const LinkConfig& config, int rate_hz, std::uint64_t seed, int hearer, int heard);
   /// From now on the link has this configuration: samples in transit arrive as they would have. config.symmetric does
-  /// not change.
-  void Adopt(const LinkConfig& config);
+  /// not change. `late_s`: by how much later than the link says samples arrive from now on.
+  void Adopt(const LinkConfig& config, double late_s = 0);
   /// Sends a sample; at most one per tick, ticks increasing. `weight`: a_ij at this tick.
   void Send(std::int64_t tick, double weight, const Sample& sample);
   /// The newest sample that has arrived by `tick` (increasing), if it arrived at this tick or is held (hold_s); else
@@ -61,10 +61,6 @@ class Link {
   /// The newest sample that had arrived at the last Receive(); null: none.
   const Packet* newest() const { return newest_.sent >= 0 ? &newest_ : nullptr; }
   const EdgeCount& count() const { return count_; }
-  /// Number of ticks after which a sample with a delay of `time_s` arrives, rounded up.
-  static std::int64_t Ticks(double time_s, int rate_hz);
-  /// For how many ticks a sample may stand in for newer ones with a hold_s of `time_s`, rounded down.
-  static std::int64_t HoldTicks(double time_s, int rate_hz);
 
  private:
   enum Draw : std::uint64_t { kLoss, kChange, kDelay, kReordering };
@@ -76,7 +72,7 @@ class Link {
 
   LinkConfig config_;
   int rate_hz_;
-  std::int64_t hold_ticks_ = 0;
+  std::int64_t hold_ticks_ = 0, late_ticks_ = 0;
   Dice dice_;
   EdgeCount count_;
   bool bad_ = false;                  // state of the Gilbert-Elliott model

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "agent/false_data.h"
+#include "agent/faulty_link.h"
 #include "agent/laws/law.h"
 #include "agent/link.h"
 #include "agent/sensor.h"
@@ -34,7 +35,8 @@ class Neighbours {
  public:
   Neighbours(const Experiment& experiment, int id);
 
-  /// From now on links, range and edges are those of `experiment`, which must outlive this object or the next Adopt().
+  /// From now on links, range, edges and faults are those of `experiment`, which must outlive this object or the next
+  /// Adopt(). If a fresh agent has taken this one's place, nothing is on its way to it any more.
   void Adopt(const Experiment& experiment);
   /// What the law hears at `tick` (increasing). `samples` are what the agents in experiment.graph.HeardBy(id) sent at
   /// this tick, in that order. `self` is the agent's true motion, for the range. Valid until the next call, and as long
@@ -52,10 +54,13 @@ class Neighbours {
   struct Channel {
     Link link;
     Noise noise;
-    std::optional<FalseData> false_data;
+    std::optional<FalseData> false_data = {};
+    std::optional<FaultyLink> faulty = {};
   };
 
   void MakeChannels();
+  /// Lets channel `k` adopt what the experiment says of its link and its sender.
+  void AdoptIn(std::size_t k);
   EdgeNow EdgeAt(std::size_t k) const;
   /// The weight of the edge from `source` at `t_s`; 0: there is no edge, or one of the agents is off.
   double WeightOf(const Graph& graph, double t_s, int source) const;
@@ -64,7 +69,8 @@ class Neighbours {
   /// True if every sample is heard at once as it was sent: one graph, no range, perfect links, no noise, and these
   /// agents are on from start to end.
   bool IsPlain() const;
-  /// What agent may_hear_[k] sends at `tick`: the truth, or its lie, which is valid until the next call.
+  /// What agent may_hear_[k] sends at `tick`: the truth, or its lie, or what its radio makes of it; valid until the
+  /// next call.
   Sample SaidBy(std::size_t k, std::int64_t tick, const Sample& truth);
   void HearPlain(std::span<const Sample> samples);
   /// `message`, which agent may_hear_[k] sent with its answer to `tick`; empty if that was before its law began: the
@@ -81,10 +87,12 @@ class Neighbours {
   std::vector<EdgeNow::State> edge_states_;  // by index in may_hear_: kNoEdge, kOutOfRange, or else kLost
   std::int64_t tick_ = -1;                   // of the last Hear()
   bool plain_;
-  std::vector<EdgeCount> plain_counts_;  // by index in may_hear_: of ticks at which plain_ held
+  /// By index in may_hear_: of ticks at which plain_ held, and of links that a fresh agent has left behind.
+  std::vector<EdgeCount> early_counts_;
 };
 
-/// Whether the agent's law is on, and other agents may hear the agent: from start_s to stop_s, without the latter.
+/// Whether the agent's law is on, and other agents may hear the agent: from start_s to stop_s, without the latter, and
+/// while the agent is not lost.
 bool IsOn(const AgentConfig& agent, double t_s);
 
 }  // namespace mascot

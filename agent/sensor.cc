@@ -33,7 +33,7 @@ void Noise::AddTo(Motion& motion, std::int64_t tick) const {
 OwnSensor::OwnSensor(const SensorConfig& config, int rate_hz, std::uint64_t seed, int id)
     : noise_(config.own, Dice(seed, Dice::Stream::kOwnSensor, static_cast<std::uint64_t>(id))),
       exact_(config.own.IsNone()),
-      delay_ticks_(Link::Ticks(config.own_delay_s, rate_hz)),
+      delay_ticks_(TicksRoundedUp(config.own_delay_s, rate_hz)),
       past_(static_cast<std::size_t>(delay_ticks_) + 1) {}
 
 Motion OwnSensor::Measure(std::int64_t tick, const Motion& self) {

@@ -35,7 +35,16 @@ class Random {
 /// that it does not depend on which others were drawn, or when, or in which process.
 class Dice {
  public:
-  enum class Stream : std::uint64_t { kLink = 1, kOwnSensor, kHeardSensor, kWind, kFalseData };
+  enum class Stream : std::uint64_t {
+    kLink = 1,
+    kOwnSensor,
+    kHeardSensor,
+    kWind,
+    kFalseData,
+    kFaultySensor,
+    kFaultyMotor,
+    kFaultyLink
+  };
 
   /// `a` and `b` name the owner of the numbers: an agent, or the two agents of an edge.
   Dice(std::uint64_t seed, Stream stream, std::uint64_t a = 0, std::uint64_t b = 0)

@@ -16,7 +16,7 @@ namespace mascot {
 namespace {
 
 constexpr Range kGoTo_m = {-1e6, 1e6};
-constexpr std::array kEventKinds = {"set", "goto", "graph", "cut", "mend"};
+constexpr std::array kEventKinds = {"set", "goto", "graph", "cut", "mend", "fault", "restart"};
 
 constexpr Key kGoToKeys[] = {
     key::Integer("agent", 1, kMaxAgents, "a leader, or an agent that flies waypoints").Required(),
@@ -30,19 +30,13 @@ constexpr Key kGraphKeys[] = {
 constexpr Key kAgents = key::Numbers("agents", {1, kMaxAgents}, "with set: the agents for which it is")
                             .Otherwise("all agents that have the key");
 
-constexpr Key kEventKeys[] = {
-    key::Number("at_s", {0, 1e6}, "when; a whole number of ticks").Required(),
-    key::Any("set", "live keys and their new values: `{ \"law.p_gain\" = 0.2 }`"),
-    kAgents,
-    key::Table("goto", kGoToKeys, "the agent's waypoints are replaced by this one"),
-    key::Table("graph", kGraphKeys, "these edges work from now on, of those that the file declares, and no others"),
-    key::Rows("cut", {1, kMaxAgents}, "`[i, j]`, ...: edges that work no more (i hears j)"),
-    key::Rows("mend", {1, kMaxAgents}, "`[i, j]`, ...: edges that work again"),
-};
-
 constexpr Key kPhaseKeys[] = {
     key::Any("law", "a whole law table"),
     kAgents,
+};
+
+constexpr Key kAfterLossKeys[] = {
+    key::Boolean("after_loss", "run.on_agent_loss has brought the restart"),
 };
 
 /// Puts the leaves of `value` into `set`, under dotted keys: { law = { p_gain = 1 } } is { "law.p_gain" = 1 }. Returns
@@ -152,6 +146,9 @@ std::string Event::Toml() const {
   if (graph) text += "graph = { edges = " + EdgesText(*graph) + " }\n";
   if (!cut.empty()) text += "cut = " + EdgesText(cut) + "\n";
   if (!mend.empty()) text += "mend = " + EdgesText(mend) + "\n";
+  if (fault) text += "fault = " + ToToml(*fault) + "\n";
+  if (restart) text += "restart = " + std::to_string(*restart) + "\n";
+  if (after_loss) text += "after_loss = true\n";
   return text;
 }
 
@@ -174,7 +171,21 @@ std::int64_t ReadTick(Section& section, int rate_hz, std::int64_t last_tick) {
   return section.Wrong("at_s") ? 0 : std::llround(ticks);
 }
 
-std::span<const Key> EventKeys() { return kEventKeys; }
+std::span<const Key> EventKeys() {
+  static const Key keys[] = {
+      key::Number("at_s", {0, 1e6}, "when; a whole number of ticks").Required(),
+      key::Any("set", "live keys and their new values: `{ \"law.p_gain\" = 0.2 }`"),
+      kAgents,
+      key::Table("goto", kGoToKeys, "the agent's waypoints are replaced by this one"),
+      key::Table("graph", kGraphKeys, "these edges work from now on, of those that the file declares, and no others"),
+      key::Rows("cut", {1, kMaxAgents}, "`[i, j]`, ...: edges that work no more (i hears j)"),
+      key::Rows("mend", {1, kMaxAgents}, "`[i, j]`, ...: edges that work again"),
+      key::Table("fault", FaultKeys(), "something goes wrong with an agent, see the table of faults"),
+      key::Integer("restart", 1, kMaxAgents,
+                   "a fresh process of this agent takes its place, with a law that begins anew"),
+  };
+  return keys;
+}
 
 Event ReadEvent(Section& section, int agents) {
   Event event;
@@ -188,16 +199,24 @@ Event ReadEvent(Section& section, int agents) {
     *edges = ReadEdges(section, key);
     if (edges->empty() && !section.Wrong(key)) section.Fail(key, "expected edges [i, j] (i hears j), got none");
   }
+  if (section.Has("fault")) event.fault = ReadFault(section.Child("fault"), agents);
+  if (section.Has("restart"))
+    event.restart = static_cast<int>(section.Integer("restart", 1, agents > 0 ? agents : kMaxAgents));
   return event;
 }
 
-bool IsPhase(const std::string& toml) { return Section::FromInlineTable(toml, "event").Has("law"); }
+bool StandsElsewhere(const std::string& toml) {
+  const Section section = Section::FromInlineTable(toml, "event");
+  return section.Has("law") || section.Has("after_loss");
+}
 
 Event EventFrom(std::int64_t tick, const std::string& toml, int agents, const std::string& where) {
   Section section = Section::FromInlineTable(toml, where);
   const bool is_phase = section.Has("law");
-  section.Use(is_phase ? std::span<const Key>(kPhaseKeys) : kEventKeys);
+  section.Use(is_phase ? std::span<const Key>(kPhaseKeys) : EventKeys());
+  if (!is_phase) section.Use(kAfterLossKeys);
   Event event = is_phase ? ReadPhase(section, agents) : ReadEvent(section, agents);
+  if (section.Has("after_loss")) event.after_loss = section.Boolean("after_loss");
   section.Done();
   section.ThrowIfWrong();
   event.tick = tick;

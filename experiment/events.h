@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "experiment/faults.h"
 #include "experiment/graph/edge.h"
 #include "experiment/toml/section.h"
 
@@ -28,6 +29,9 @@ struct Event {
   std::optional<Edges> graph = {};        ///< the edges that work from now on, of those that the file declares
   Edges cut = {};                         ///< edges that work no more
   Edges mend = {};                        ///< edges that work again
+  std::optional<Fault> fault = {};        ///< what goes wrong with an agent
+  std::optional<int> restart = {};        ///< the agent whose place a fresh one takes
+  bool after_loss = false;                ///< of restart: run.on_agent_loss has brought it, no [[events]]
   /// A phase of [[law.schedule]]: the whole law table from now on, of `agents`, or else of all without one of their
   /// own.
   std::optional<Value::Table> law = {};
@@ -49,9 +53,11 @@ std::span<const Key> EventKeys();
 /// Reads `section`, one [[events]] table or the keys given by hand, all but at_s. `agents`: their number; 0: unknown
 /// because of a mistake. Which keys are live, and which values legal, LiveExperiment::Take() says.
 Event ReadEvent(Section& section, int agents);
-/// Whether Event::Toml() is that of a phase.
-bool IsPhase(const std::string& toml);
-/// The event of this tick that Event::Toml() is `toml` of: of any event of a run of so many agents, also of a phase.
+/// Whether the event whose Event::Toml() this is stands elsewhere in the file than in [[events]]: a phase, or a restart
+/// that run.on_agent_loss brings.
+bool StandsElsewhere(const std::string& toml);
+/// The event of this tick that Event::Toml() is `toml` of: of any event of a run of so many agents, also of those that
+/// stand elsewhere.
 /// Throws ConfigError, with `where` in front, for other text.
 Event EventFrom(std::int64_t tick, const std::string& toml, int agents, const std::string& where);
 /// Reads [[events]], in the order of the file. `ticks`: the last tick.

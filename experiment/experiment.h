@@ -14,6 +14,7 @@
 #include "experiment/airframe.h"
 #include "experiment/events.h"
 #include "experiment/false_data.h"
+#include "experiment/faults.h"
 #include "experiment/graph/graph.h"
 #include "experiment/graph/schedule.h"
 #include "experiment/hosts.h"
@@ -29,6 +30,17 @@ inline constexpr int kMaxAgents = 10000;
 
 enum class Mode { kLockstep, kRealtime };
 inline constexpr EnumNames<Mode, 2> kModes({{Mode::kLockstep, "lockstep"}, {Mode::kRealtime, "realtime"}});
+/// What happens when an agent is lost, by an event or for real.
+enum class OnAgentLoss {
+  kAbort,   ///< the run ends, and has failed
+  kHold,    ///< the agent's actuators keep their last values
+  kDrop,    ///< they go to zero
+  kRestart  ///< as kHold; after run.restart_after_s a fresh process of the agent takes its place
+};
+inline constexpr EnumNames<OnAgentLoss, 4> kOnAgentLoss({{OnAgentLoss::kAbort, "abort"},
+                                                         {OnAgentLoss::kHold, "hold"},
+                                                         {OnAgentLoss::kDrop, "drop"},
+                                                         {OnAgentLoss::kRestart, "restart"}});
 enum class Scheduler { kOther, kFifo };
 inline constexpr EnumNames<Scheduler, 2> kSchedulers({{Scheduler::kOther, "other"}, {Scheduler::kFifo, "fifo"}});
 enum class Axes { kXy, kXyz };
@@ -100,6 +112,7 @@ struct AgentConfig {
   bool external = false;                    ///< the agent is started by hand, and the run waits for it
   std::string host = {};                    ///< name of one of Experiment::hosts; empty: the host of the physics server
   std::optional<FalseDataConfig> lie = {};  ///< absent: the agent tells the truth
+  AgentFaults faults = {};                  ///< what events have done to the agent
 
   const ModelTraits& traits() const { return TraitsOf(model); }
   /// Full lengths of the agent's collision shape along the axes of B (m).
@@ -130,6 +143,8 @@ struct Experiment {
     std::uint64_t seed = 1;
     double agent_timeout_s = 5;
     double start_timeout_s = 60;
+    OnAgentLoss on_agent_loss = OnAgentLoss::kAbort;
+    double restart_after_s = 1;  ///< simulated time
     double speed = 1;
     std::optional<double> pace = {};  ///< simulated seconds per second in lockstep; 0: as fast as the machine can
     Scheduler scheduler = Scheduler::kOther;
@@ -193,5 +208,8 @@ struct Experiment {
   int ticks_per_row() const { return record.rate_hz == 0 ? 1 : control.rate_hz / record.rate_hz; }
   int steps_per_tick() const { return physics.rate_hz / control.rate_hz; }
 };
+
+/// Why run.on_agent_loss ends the run; empty: it does not.
+std::string LossThatEndsTheRun(const Experiment& now);
 
 }  // namespace mascot

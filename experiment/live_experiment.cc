@@ -1,6 +1,7 @@
 #include "experiment/live_experiment.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -133,8 +134,40 @@ void LiveExperiment::Take(const Event& event) {
   }
   tables_.Keep();
   if (event.law) BeginLaws(event);
+  if (event.fault || event.restart) TakeFault(event);
   shared_.reset();
   ++count_;
+}
+
+void LiveExperiment::TakeFault(const Event& event) {
+  AgentConfig& agent = now_.agents[static_cast<std::size_t>((event.restart ? *event.restart : event.fault->agent) - 1)];
+  AgentFaults& faults = agent.faults;
+  const bool was_lost = faults.is_lost();
+  const bool is_of_itself = event.restart || event.fault->of == FaultPart::kAgent;
+  if (event.restart) {
+    Restart(event.tick, faults);
+    std::erase_if(restarts_, [&](const auto& restart) { return restart.second == agent.id; });
+  } else {
+    Begin(*event.fault, event.tick, faults);
+  }
+  const bool begins_to_lie = event.fault && event.fault->kind == FaultKind::kLie;
+  if (is_of_itself && (event.restart || event.fault->kind == FaultKind::kOk || begins_to_lie)) agent.lie.reset();
+  if (begins_to_lie) {
+    agent.lie = event.fault->false_data;
+    agent.lie->from_s = now_.time_s(event.tick);
+  }
+  if (faults.is_lost() && !was_lost && now_.run.on_agent_loss == OnAgentLoss::kRestart) {
+    const auto ticks = std::max<std::int64_t>(1, std::llround(now_.run.restart_after_s * now_.control.rate_hz));
+    restarts_.emplace(event.tick + ticks, agent.id);
+  }
+}
+
+std::vector<Event> LiveExperiment::RestartsAt(std::int64_t tick) const {
+  std::vector<Event> events;
+  for (const auto& [at, agent] : restarts_)
+    if (at == tick)
+      events.push_back({.tick = tick, .restart = agent, .after_loss = true, .where = "run.on_agent_loss"});
+  return events;
 }
 
 std::optional<std::set<std::pair<int, int>>> LiveExperiment::CutAfter(const Event& event) const {

@@ -51,6 +51,9 @@ class LiveExperiment {
   std::optional<Value> ValueOf(const std::string& key) const { return tables_.Get(key); }
   /// The values of a live key that agents have of their own now, by the file or by events, by id; at most `most`.
   std::map<int, Value> OwnValuesOf(const std::string& key, std::size_t most) const;
+  /// The events that run.on_agent_loss = "restart" brings at `tick`, after those of the file and those by hand. They
+  /// must be taken, too; they stand in no file.
+  std::vector<Event> RestartsAt(std::int64_t tick) const;
   /// How many events were taken so far.
   int count() const { return count_; }
 
@@ -84,6 +87,8 @@ class LiveExperiment {
   void CheckKey(const Event& event, const std::string& key) const;
   /// Checks that the laws of the agents that the event concerns let their law.params change. `laws`: with the event.
   void CheckParams(const Event& event, const LawsAgain& laws) const;
+  /// Notes what a fault or a restart does to its agent.
+  void TakeFault(const Event& event);
   /// nullopt: the event changes no edges.
   std::optional<std::set<std::pair<int, int>>> CutAfter(const Event& event) const;
 
@@ -96,6 +101,7 @@ class LiveExperiment {
   std::map<int, std::shared_ptr<const Value::Table>> law_tables_;  // of agents with their own, by id; at 0 the team's;
                                                                    // as the file has them, but for live keys
   bool team_has_changed_ = false;                                  // by a phase
+  std::set<std::pair<std::int64_t, int>> restarts_;                // that run.on_agent_loss will bring: ticks and ids
   std::int64_t phase_tick_ = -1;  // at which the newest phase began; -1: there is only the first
   int count_ = 0;                 // of events
 };

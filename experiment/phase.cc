@@ -50,6 +50,9 @@ Experiment PhaseAsExperiment(const Experiment& start, const Experiment& now, std
     agent.start_s = std::max(0.0, agent.start_s - from_s);
     agent.stop_s -= from_s;
     agent.law.since -= from;
+    agent.faults.restarted -= from;
+    if (agent.faults.lost_since) *agent.faults.lost_since -= from;
+    for (PartFault& part : agent.faults.parts) part.since -= from;
     if (agent.lie) agent.lie->from_s = std::max(0.0, agent.lie->from_s - from_s);
   }
   return phase;

@@ -34,6 +34,13 @@ constexpr Key kRunKeys[] = {
         .Default("5.0"),
     key::Number("start_timeout_s", Above(0, 3600), "wall-clock time that the start may take before the run fails")
         .Default("60.0"),
+    key::OneOf(
+        "on_agent_loss", kOnAgentLoss.names(),
+        "when an agent is lost, by an event or for real; abort: the run ends; hold: its actuators keep their last "
+        "values; drop: they go to zero; restart: as hold, and a fresh process takes its place")
+        .Default("\"abort\""),
+    key::Number("restart_after_s", Above(0, 1e6), "with restart: simulated time from the loss to the fresh process")
+        .Default("1.0"),
     key::Number("speed", Above(0, 1000), "in realtime: simulated seconds per second").Default("1.0"),
     key::Number("pace", {0, 1000},
                 "in lockstep: simulated seconds per second, for people who watch; 0: as fast as the machine can; "
@@ -108,6 +115,8 @@ void ReadRun(Section& section, const std::string& default_name, Experiment& expe
   run.seed = static_cast<std::uint64_t>(section.Integer("seed"));
   run.agent_timeout_s = section.Number("agent_timeout_s");
   run.start_timeout_s = section.Number("start_timeout_s");
+  run.on_agent_loss = kOnAgentLoss.Value(section.OneOf("on_agent_loss"));
+  run.restart_after_s = section.Number("restart_after_s");
   run.speed = section.Number("speed");
   run.pace = ReadPace(section, run.mode);
   run.scheduler = kSchedulers.Value(section.OneOf("scheduler"));

@@ -20,6 +20,7 @@
 #include "physics_server/bullet/contact_counter.h"
 #include "physics_server/bullet/scene.h"
 #include "physics_server/clearance.h"
+#include "physics_server/faulty_motors.h"
 #include "physics_server/lanes/rotor_bodies.h"
 #include "physics_server/model.h"
 #include "physics_server/swept_box.h"
@@ -75,6 +76,7 @@ struct World::Impl {
   std::int64_t tick = 0;
   Wind wind;
   std::vector<std::array<double, 3>> wind_W;  // by step of this tick
+  FaultyMotors motors;
   LookForContacts look;
   ContactCounter contacts;
   std::int64_t steps_with_contacts = 0;
@@ -103,6 +105,7 @@ World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contact
       steps_per_tick(experiment.steps_per_tick()),
       wind(experiment.physics.wind, experiment.run.seed, dt_s),
       wind_W(static_cast<std::size_t>(steps_per_tick)),
+      motors(experiment),
       look(look_for_contacts),
       contacts(experiment.agents.size()),
       scene(experiment) {
@@ -280,14 +283,17 @@ World::World(const Experiment& experiment, LookForContacts look, int max_lanes, 
     : impl_(std::make_unique<Impl>(experiment, look, max_lanes, crew)) {}
 World::~World() = default;
 
-void World::Adopt(const Experiment& now) { impl_->wind.Adopt(now.physics.wind); }
+void World::Adopt(const Experiment& now) {
+  impl_->wind.Adopt(now.physics.wind);
+  impl_->motors.Adopt(now);
+}
 
 Motion World::State(int id) const { return impl_->bodies[static_cast<std::size_t>(id - 1)].state; }
 
 void World::Step(std::span<const Actuation> commands) {
   if (commands.size() != impl_->bodies.size()) throw std::invalid_argument("World::Step: one command per agent");
   CheckFinite(commands, impl_->tick);
-  impl_->Tick(commands);
+  impl_->Tick(impl_->motors.CarriedOut(impl_->tick, commands));
 }
 
 std::int64_t World::tick() const { return impl_->tick; }

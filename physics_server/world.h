@@ -28,13 +28,14 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Call it when events have changed the experiment: from the next Step() on, the wind is that of `now`.
+  /// Call it when events have changed the experiment: from the next Step() on, the wind and the faults of motors are
+  /// those of `now`.
   void Adopt(const Experiment& now);
   /// Motion of agent `id` (1..N) at the current tick. a_WB is (v(k) - v(k-1)) * control rate, 0 at tick 0.
   Motion State(int id) const;
-  /// Runs exactly one tick (physics rate / control rate steps) with `commands[id - 1]` held. Throws std::runtime_error
-  /// naming agent and tick if a command or a resulting state is not finite, std::invalid_argument if there is not one
-  /// command per agent.
+  /// Runs exactly one tick (physics rate / control rate steps) with `commands[id - 1]` held, as far as the agent's
+  /// motors carry it out (FaultyMotors). Throws std::runtime_error naming agent and tick if a command or a resulting
+  /// state is not finite, std::invalid_argument if there is not one command per agent.
   void Step(std::span<const Actuation> commands);
   /// The current tick: 0, then one more after each Step().
   std::int64_t tick() const;

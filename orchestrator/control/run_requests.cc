@@ -102,6 +102,8 @@ RunRequests::Order RunRequests::CheckedEvent(const std::string& toml, std::int64
   if (event.law)
     throw std::invalid_argument(std::string(kByHand) +
                                 ": law: expected a phase in [[law.schedule]] of the file, got one by hand");
+  if (event.after_loss)
+    throw std::invalid_argument(std::string(kByHand) + ": after_loss: expected of the run alone, got it by hand");
   const std::vector<Event>& file = experiment_.events;
   Ahead ahead = *ahead_;
   if (ahead.by_hand + file.size() >= LiveExperiment::kMaxEvents)
@@ -172,7 +174,7 @@ void RunRequests::Adopt(const LiveExperiment& live, std::span<const Event> event
     ++number;
     if (of_file_ < file.size() && file[of_file_].tick == event.tick) {  // those of the file come first
       ++of_file_;
-    } else {
+    } else if (!event.after_loss) {
       by_hand_.push_back(event);
       numbers_by_hand_.push_back(number);
       if (!granted_.empty()) granted_.pop_front();

@@ -1,9 +1,12 @@
 #include "orchestrator/engines/inprocess.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -35,9 +38,12 @@ class Flight {
     TakeEvents(tick);
     for (const AgentConfig& agent : experiment_.agents)
       row_.motions[static_cast<std::size_t>(agent.id - 1)] = world_.State(agent.id);
-    team_.Decide(tick, row_.motions, row_.commands);
+    team_.Decide(tick, row_.motions, row_.commands, SilentAt(tick));
     for (const AgentConfig& agent : experiment_.agents) {
       const auto i = static_cast<std::size_t>(agent.id - 1);
+      row_.has_answered[i] = team_.HasAnswered(agent.id);
+      row_.messages[i].clear();
+      if (!team_.HasAnswered(agent.id)) continue;
       row_.commands[i].v_law_W.setZero();  // as over DDS, where velocities are not sent
       row_.commands[i].v_limited_W.setZero();
       actuation_[i] = row_.commands[i].actuator;
@@ -65,14 +71,26 @@ class Flight {
     return *live_;
   }
 
-  /// Takes the events of this tick: first the file's, then those given by hand.
+  /// The agents that do not answer this tick, as the events of the next one say.
+  std::span<const int> SilentAt(std::int64_t tick) {
+    silent_.clear();
+    for (std::size_t k = next_event_; k < experiment_.events.size() && experiment_.events[k].tick == tick + 1; ++k)
+      if (const auto& fault = experiment_.events[k].fault; fault && fault->unanswered) silent_.push_back(fault->agent);
+    return silent_;
+  }
+
+  /// Takes the events of this tick: first the file's, then those given by hand, then what run.on_agent_loss brings.
   void TakeEvents(std::int64_t tick) {
     row_.events.clear();
     new_pace_.reset();
     while (next_event_ < experiment_.events.size() && experiment_.events[next_event_].tick == tick)
       TakeEvent(experiment_.events[next_event_++]);
     for (const Event& event : std::exchange(by_hand_, {})) TakeEvent(event);
+    if (live_)
+      for (const Event& event : live_->RestartsAt(tick)) TakeEvent(event);
     if (row_.events.empty()) return;
+    if (const std::string loss = LossThatEndsTheRun(Live().current()); !loss.empty())
+      throw std::runtime_error(fmt::format("tick {}: {}", tick, loss));
     world_.Adopt(*Live().now());
     team_.Adopt(Live().now());
   }
@@ -90,6 +108,7 @@ class Flight {
   std::size_t next_event_ = 0;          // in experiment_.events
   std::vector<Event> by_hand_;
   std::optional<double> new_pace_;
+  std::vector<int> silent_;
   std::vector<Actuation> actuation_;
   DecodedRow row_;
 };

@@ -8,46 +8,49 @@
 namespace mascot {
 namespace {
 
-/// The indices of the agents that count: those that do not lie, or all if all do.
-std::vector<std::size_t> Honest(const Experiment& experiment) {
-  std::vector<std::size_t> honest, all;
+/// The indices of the agents that count: those that neither lie nor are lost, or all if there are none.
+std::vector<std::size_t> Counting(const Experiment& experiment) {
+  std::vector<std::size_t> counting, all;
   for (std::size_t i = 0; i < experiment.agents.size(); ++i) {
     all.push_back(i);
-    if (!experiment.agents[i].lie) honest.push_back(i);
+    if (!experiment.agents[i].lie && !experiment.agents[i].faults.is_lost()) counting.push_back(i);
   }
-  return honest.empty() ? all : honest;
+  return counting.empty() ? all : counting;
 }
 
-Eigen::Vector3d MeanOf(std::span<const Eigen::Vector3d> q_W, std::span<const std::size_t> honest) {
+Eigen::Vector3d MeanOf(std::span<const Eigen::Vector3d> q_W, std::span<const std::size_t> counting) {
   Eigen::Vector3d mean_W = Eigen::Vector3d::Zero();
-  for (const std::size_t i : honest) mean_W += q_W[i] / static_cast<double>(honest.size());
+  for (const std::size_t i : counting) mean_W += q_W[i] / static_cast<double>(counting.size());
   return mean_W;
 }
 
-double LargestDistance(const LawConfig& law, std::span<const Eigen::Vector3d> q_W, std::span<const std::size_t> honest,
-                       const Eigen::Vector3d& mean_W) {
+double LargestDistance(const LawConfig& law, std::span<const Eigen::Vector3d> q_W,
+                       std::span<const std::size_t> counting, const Eigen::Vector3d& mean_W) {
   const Eigen::Vector3d centre_W = law.leader > 0 ? q_W[static_cast<std::size_t>(law.leader - 1)] : mean_W;
   double largest_m = 0;
-  for (const std::size_t i : honest) largest_m = std::max(largest_m, Along(law.axes, q_W[i] - centre_W).norm());
+  for (const std::size_t i : counting) largest_m = std::max(largest_m, Along(law.axes, q_W[i] - centre_W).norm());
   return largest_m;
 }
 
 }  // namespace
 
-AgreementMeter::AgreementMeter(const Experiment& experiment) : experiment_(experiment), honest_(Honest(experiment)) {}
+AgreementMeter::AgreementMeter(const Experiment& experiment)
+    : experiment_(experiment), counting_(Counting(experiment)) {}
+
+void AgreementMeter::Adopt(const Experiment& now) { counting_ = Counting(now); }
 
 double DisagreementOf(const Experiment& experiment, std::span<const Motion> motions) {
   const auto places_W = PlacesOf(experiment.law);
   std::vector<Eigen::Vector3d> q_W;
   for (const Motion& motion : motions) q_W.push_back(motion.p_WB);
   for (std::size_t i = 0; i < places_W.size(); ++i) q_W[i] -= places_W[i];
-  const std::vector<std::size_t> honest = Honest(experiment);
-  return LargestDistance(experiment.law, q_W, honest, MeanOf(q_W, honest));
+  const std::vector<std::size_t> counting = Counting(experiment);
+  return LargestDistance(experiment.law, q_W, counting, MeanOf(q_W, counting));
 }
 
 void AgreementMeter::Add(std::span<const Eigen::Vector3d> q_W) {
-  mean_W_ = MeanOf(q_W, honest_);
-  disagreement_m_ = LargestDistance(experiment_.law, q_W, honest_, mean_W_);
+  mean_W_ = MeanOf(q_W, counting_);
+  disagreement_m_ = LargestDistance(experiment_.law, q_W, counting_, mean_W_);
   decay_.Add(experiment_.time_s(ticks_), disagreement_m_);
   if (ticks_ == 0) first_disagreement_m_ = disagreement_m_;
   constexpr double kSettledFraction = 0.02;

@@ -16,11 +16,13 @@ namespace mascot {
 /// places.
 double DisagreementOf(const Experiment& experiment, std::span<const Motion> motions);
 
-/// Measures how far agents that do not lie are from agreement, tick by tick. The disagreement is the largest distance,
-/// along law.axes, from the mean, or from the leader if there is one.
+/// Measures how far agents that neither lie nor are lost are from agreement, tick by tick. The disagreement is the
+/// largest distance, along law.axes, from the mean, or from the leader if there is one.
 class AgreementMeter {
  public:
   explicit AgreementMeter(const Experiment& experiment);
+  /// Call it when events have changed the experiment: from the next tick on, the agents that count are those of `now`.
+  void Adopt(const Experiment& now);
   /// Adds the next tick. `q_W` is what the agents agree on, by id - 1, in W (m): their positions, in a formation less
   /// their places.
   void Add(std::span<const Eigen::Vector3d> q_W);
@@ -37,7 +39,7 @@ class AgreementMeter {
 
  private:
   const Experiment& experiment_;
-  std::vector<std::size_t> honest_;  // index in the experiment's agents
+  std::vector<std::size_t> counting_;  // index in the experiment's agents
   std::int64_t ticks_ = 0;
   Eigen::Vector3d mean_W_ = Eigen::Vector3d::Zero();
   double disagreement_m_ = 0;

@@ -12,6 +12,9 @@ AimMeter::AimMeter(const Experiment& phase) : experiment_(phase), agreement_(pha
 void AimMeter::Adopt(const Experiment& now) {
   const auto places_W = PlacesOf(now.law);
   formation_.offsets_m.assign(places_W.begin(), places_W.end());
+  agreement_.Adopt(now);
+  is_lost_.clear();
+  for (const AgentConfig& agent : now.agents) is_lost_.push_back(agent.faults.is_lost());
 }
 
 void AimMeter::Add(std::span<const Motion> motions) {
@@ -19,7 +22,8 @@ void AimMeter::Add(std::span<const Motion> motions) {
   speed_m_per_s_ = 0;
   for (std::size_t i = 0; i < motions.size(); ++i) {
     agreed_W_.push_back(Agreed(i, motions[i]));
-    speed_m_per_s_ = std::max(speed_m_per_s_, Along(experiment_.law.axes, motions[i].v_WB).norm());
+    if (is_lost_[i] == 0)
+      speed_m_per_s_ = std::max(speed_m_per_s_, Along(experiment_.law.axes, motions[i].v_WB).norm());
   }
   agreement_.Add(agreed_W_);
   MeasureFormation(motions);
@@ -38,6 +42,7 @@ void AimMeter::MeasureFormation(std::span<const Motion> motions) {
     const auto i = static_cast<std::size_t>(id - 1);
     for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id)) {
       const auto j = static_cast<std::size_t>(heard.id - 1);
+      if (is_lost_[i] != 0 || is_lost_[j] != 0) continue;
       squares += Along(experiment_.law.axes, Agreed(i, motions[i]) - Agreed(j, motions[j])).squaredNorm();
     }
   }

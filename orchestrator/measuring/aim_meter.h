@@ -21,7 +21,7 @@ struct Aim {
   Eigen::Vector3d value_m = Eigen::Vector3d::Zero();  ///< mean position at the end
   double final_disagreement_m = 0;                    ///< largest distance from the mean, or the leader, along
                                                       ///< law.axes; in a formation, of p_i - d_i
-  double final_speed_m_per_s = 0;                     ///< largest speed of an agent, along law.axes
+  double final_speed_m_per_s = 0;                     ///< largest speed of an agent that is not lost, along law.axes
   std::optional<double> settling_time_s;              ///< since the phase began; absent: not settled by the end
   std::optional<double> rate_per_s;                   ///< decay rate of the disagreement (decay_meter.h)
   std::vector<PursuitMeter::Edge> minmax_edges;       ///< for min-max consensus
@@ -55,6 +55,7 @@ class AimMeter {
   const Experiment& experiment_;
   std::int64_t rows_ = 0;
   AgreementMeter agreement_;
+  std::vector<char> is_lost_;  // by id - 1
   double speed_m_per_s_ = 0;
   PursuitMeter pursuit_;
   Aim::Formation formation_;

@@ -27,7 +27,10 @@ std::string_view EventInTable(std::string_view toml) {
 }
 
 IncidentMeter::IncidentMeter(const Experiment& experiment)
-    : experiment_(experiment), gap_(EpisodeGapTicks(experiment.control.rate_hz)), open_(experiment.agents.size()) {}
+    : experiment_(experiment),
+      gap_(EpisodeGapTicks(experiment.control.rate_hz)),
+      open_(experiment.agents.size()),
+      is_lost_(experiment.agents.size()) {}
 
 void IncidentMeter::Close(Incident incident) {
   if (closed_.told.size() < kMaxIncidentsTold)
@@ -47,7 +50,7 @@ void IncidentMeter::Note(Episode& open, Kind kind, int agent, int other, std::in
 void IncidentMeter::NoteLimits(std::int64_t tick, const std::vector<Command>& commands) {
   for (std::size_t i = 0; i < commands.size(); ++i)
     for (const auto& [flag, kind] : kFlags)
-      if ((commands[i].flags & flag) != 0)
+      if ((commands[i].flags & flag) != 0 && is_lost_[i] == 0)
         Note(open_[i][static_cast<std::size_t>(kind)], kind, static_cast<int>(i) + 1, 0, tick);
 }
 
@@ -66,10 +69,16 @@ void IncidentMeter::NoteLosses(std::int64_t tick, const LinkMeter& links) {
 
 void IncidentMeter::Add(const FlownRow& row, const LinkMeter& links) {
   tick_ = row.tick();
+  for (const DecodedRow::RowEvent& event : row.decoded().events) NoteEvent(event);
   NoteLimits(tick_, row.decoded().commands);
   NoteLosses(tick_, links);
-  for (const DecodedRow::RowEvent& event : row.decoded().events)
-    Close({.kind = Kind::kEvent, .from = tick_, .to = tick_, .other = event.number, .toml = event.event.Toml()});
+}
+
+void IncidentMeter::NoteEvent(const DecodedRow::RowEvent& event) {
+  const auto& [number, what] = event;
+  if (what.fault && what.fault->IsLoss()) is_lost_[static_cast<std::size_t>(what.fault->agent - 1)] = true;
+  if (what.restart) is_lost_[static_cast<std::size_t>(*what.restart - 1)] = false;
+  Close({.kind = Kind::kEvent, .from = tick_, .to = tick_, .other = number, .toml = what.Toml()});
 }
 
 Incidents IncidentMeter::Result(const Contacts& contacts, const std::vector<LateCommands>& late) const {

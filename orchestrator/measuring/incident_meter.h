@@ -65,6 +65,7 @@ class IncidentMeter {
  private:
   void Note(Episode& open, Incident::Kind kind, int agent, int other, std::int64_t tick, std::int64_t times = 1);
   void NoteLimits(std::int64_t tick, const std::vector<Command>& commands);
+  void NoteEvent(const DecodedRow::RowEvent& event);
   void NoteLosses(std::int64_t tick, const LinkMeter& links);
   void Close(Incident incident);
 
@@ -72,6 +73,7 @@ class IncidentMeter {
   const Experiment& experiment_;
   const std::int64_t gap_;                         // in ticks
   std::vector<std::array<Episode, kKinds>> open_;  // by id - 1, then by kind: limits
+  std::vector<char> is_lost_;                      // by id - 1
   struct Edge {
     int hearer = 0, heard = 0;
     std::uint64_t lost = 0;

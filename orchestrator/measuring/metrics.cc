@@ -1,5 +1,7 @@
 #include "orchestrator/measuring/metrics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,6 +12,16 @@
 
 namespace mascot {
 namespace {
+
+/// A fault for which there are no ideal bodies, in words; empty: there is none.
+std::string FaultOfBodies(const Experiment& now) {
+  for (const AgentConfig& agent : now.agents) {
+    if (agent.faults.is_lost()) return fmt::format("agent {} was lost", agent.id);
+    for (const PartFault& part : agent.faults.parts)
+      if (part.fault.of == FaultPart::kMotor) return fmt::format("a motor of agent {} failed", agent.id);
+  }
+  return "";
+}
 
 /// The number of agents that are commanded accelerations.
 std::int64_t CommandedByAcceleration(const Experiment& experiment) {
@@ -27,31 +39,37 @@ Metrics::Metrics(const Experiment& experiment, Crew& crew) : experiment_(experim
 
 void Metrics::Take(const Experiment& experiment) {
   axes_.clear();
+  is_lost_.clear();
   for (const AgentConfig& agent : experiment.agents) {
     has_safety_ = has_safety_ || agent.law.safety;
     axes_.push_back(agent.law.axes);
+    is_lost_.push_back(agent.faults.is_lost());
   }
 }
 
 void Metrics::Adopt(std::shared_ptr<const Experiment> now) {
   accelerated_ = std::max(accelerated_, CommandedByAcceleration(*now));
   Take(*now);
+  if (ideal_) fault_ = FaultOfBodies(*now);
+  if (!fault_.empty()) ideal_.reset();
   now_ = std::move(now);
 }
 
 void Metrics::Add(const DecodedRow& row) {
-  MeasureControl(row.commands);
+  MeasureControl(row);
   separation_.Add(row.motions, axes_);
   MeasureFidelity(row.motions);
   MeasurePath(row.motions);
   ++rows_;
 }
 
-void Metrics::MeasureControl(std::span<const Command> commands) {
+void Metrics::MeasureControl(const DecodedRow& row) {
   effort_m2_per_s3_ += newest_effort_m2_per_s3_;  // that of the previous row; the last commands are never applied
   newest_effort_m2_per_s3_ = 0;
   bool is_feasible = true;
-  for (const Command& command : commands) {
+  for (std::size_t i = 0; i < row.commands.size(); ++i) {
+    if (is_lost_[i] != 0) continue;
+    const Command& command = row.commands[i];
     newest_effort_m2_per_s3_ += command.a_limited_W.squaredNorm() * experiment_.period_s();
     saturated_ += (command.flags & kAccelerationLimited) != 0;
     tilt_limited_ += (command.flags & kTiltLimited) != 0;
@@ -109,6 +127,7 @@ Measured Metrics::Result() const {
   }
   if (ideal_) result.fidelity = {.rms_m = std::sqrt(squared_deviation_ / samples), .max_m = std::sqrt(max_deviation2_)};
   result.fidelity_failure = ideal_failure_;
+  result.fidelity_fault = fault_;
   result.travelled_m = path_m_ / agents;
   return result;
 }

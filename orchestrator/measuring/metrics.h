@@ -37,8 +37,9 @@ struct Measured {
     double rms_m = 0;
     double max_m = 0;
   };
-  std::optional<Fidelity> fidelity;  ///< absent: output.fidelity is off, or fidelity_failure
+  std::optional<Fidelity> fidelity;  ///< absent: output.fidelity is off, or what follows
   std::string fidelity_failure;      ///< error of a law on ideal bodies, which ended the comparison
+  std::string fidelity_fault;        ///< fault of a body, for which there is no ideal one, which ended it
 };
 
 /// Measures a run row by row. Memory does not grow with the number of rows.
@@ -54,7 +55,7 @@ class Metrics {
 
  private:
   void Take(const Experiment& experiment);
-  void MeasureControl(std::span<const Command> commands);
+  void MeasureControl(const DecodedRow& row);
   void MeasureFidelity(std::span<const Motion> motions);
   void StepIdeal();
   void MeasurePath(std::span<const Motion> motions);
@@ -62,7 +63,7 @@ class Metrics {
   const Experiment& experiment_;
   std::shared_ptr<const Experiment> now_;  // not null: the ideal team has yet to adopt it
   std::optional<IdealTeam> ideal_;
-  std::string ideal_failure_;
+  std::string ideal_failure_, fault_;
   std::int64_t rows_ = 0;
   std::int64_t accelerated_ = 0;                               // agents that are commanded accelerations
   double effort_m2_per_s3_ = 0, newest_effort_m2_per_s3_ = 0;  // sums over these agents
@@ -74,7 +75,8 @@ class Metrics {
   double max_deviation2_ = 0;
   double path_m_ = 0;
   std::vector<Eigen::Vector3d> last_p_W_;
-  std::vector<Axes> axes_;  // of the agents' laws, by id - 1
+  std::vector<Axes> axes_;     // of the agents' laws, by id - 1
+  std::vector<char> is_lost_;  // by id - 1
 };
 
 }  // namespace mascot

@@ -24,6 +24,7 @@ Comparison::Comparison(const std::string& recording, const RecordingPlan& plan, 
                        const Experiment& experiment)
     : reader_(recording), plan_(plan), recorded_(ticks) {
   for (const Topic& topic : plan_.topics) names_.push_back(topic.Name());
+  sent_.resize(names_.size());
   if (plan_.ros_types) ros_ = std::make_unique<RosRows>(experiment);
 }
 
@@ -38,15 +39,15 @@ void Comparison::Add(const FlownRow& row) {
   if (ros_ && has_row) ros_->SetRow(row);
   for (std::size_t index = 0; index < plan_.topics.size(); ++index) {
     const Topic& topic = plan_.topics[index];
-    if (topic.kind == TopicKind::kEvent) {
-      for (const Row::Bytes& event : bytes.events) AddSample(index, row.tick(), events_++, event, first);
-    } else if (has_row && topic.kind == TopicKind::kScene) {
-      if (const Row::Bytes& scene = ros_->Message(topic); !scene.empty())
-        AddSample(index, row.tick(), scenes_++, scene, first);
-    } else if (has_row) {
-      AddSample(index, row.tick(), rows_, IsOfRosTypes(topic) ? ros_->Message(topic) : SampleOf(bytes, topic), first);
-    }
-    first = false;
+    const auto add = [&](const Row::Bytes& sample) {
+      if (sample.empty()) return;  // nothing was sent
+      AddSample(index, row.tick(), sent_[index]++, sample, first);
+      first = false;
+    };
+    if (topic.kind == TopicKind::kEvent)
+      std::ranges::for_each(bytes.events, add);
+    else if (has_row)
+      add(IsOfRosTypes(topic) ? ros_->Message(topic) : SampleOf(bytes, topic));
   }
   if (over_) return;
   ++ticks_;

@@ -55,7 +55,7 @@ class Comparison final : public RowSink {
   std::string difference_;
   std::uint64_t messages_ = 0;
   std::int64_t ticks_ = 0, rows_ = 0;
-  std::int64_t events_ = 0, scenes_ = 0;
+  std::vector<std::int64_t> sent_;  // samples so far, by index in the topics of the plan
 };
 
 }  // namespace mascot

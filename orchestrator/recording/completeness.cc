@@ -15,11 +15,16 @@
 namespace mascot {
 namespace {
 
-/// Whether a topic of this kind has a sample in every row.
-bool IsPerRow(const Topic& topic, bool realtime) {
-  if (topic.kind == TopicKind::kTf) return true;  // on the wire it comes as often as viewers need it
-  const TopicRhythm rhythm = topic.traits().rhythm;
-  return rhythm == TopicRhythm::kTick || (rhythm == TopicRhythm::kAnswer && !realtime);
+/// The agents that events make answer nothing for some time.
+std::set<int> LostIn(Section& config) {
+  std::set<int> lost;
+  for (Section& event : config.Children("events")) {
+    if (!event.Has("fault")) continue;
+    Section fault = event.Child("fault");
+    const FaultKind kind = kFaultKinds.Value(fault.OneOf("kind"));
+    if (kind == FaultKind::kKill || kind == FaultKind::kHang) lost.insert(static_cast<int>(fault.Integer("agent")));
+  }
+  return lost;
 }
 
 /// Which agents have a law that sends messages, by id - 1: one that says so in the resolved experiment (law.messages of
@@ -242,7 +247,11 @@ std::string WhyIncomplete(const std::string& path, const McapContents& contents,
 
 }  // namespace
 
-bool RecordingPlan::IsInEveryRow(const Topic& topic) const { return IsPerRow(topic, realtime); }
+bool RecordingPlan::IsInEveryRow(const Topic& topic) const {
+  if (topic.kind == TopicKind::kTf) return true;  // on the wire it comes as often as viewers need it
+  const TopicRhythm rhythm = topic.traits().rhythm;
+  return rhythm == TopicRhythm::kTick || (rhythm == TopicRhythm::kAnswer && !realtime && !lost.contains(topic.agent));
+}
 
 std::string TooNew(const McapContents& contents) {
   const std::string* format = MetadataEntry(contents, kMetadata, kFormatKey);
@@ -303,6 +312,7 @@ RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
   const auto rows_hz = static_cast<int>(record.Integer("rate_hz"));
   config.ThrowIfWrong();  // before `agents` is used as a size, and rates to divide by
   plan.ticks_per_row = rows_hz == 0 ? 1 : std::max(plan.rate_hz / rows_hz, 1);
+  plan.lost = LostIn(config);
   plan.topics = TopicsOf(patterns, plan.ros_types, SendersOf(config, contents, static_cast<std::size_t>(plan.agents)));
   config.ThrowIfWrong();
   return plan;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,10 @@ struct RecordingPlan {
   int ticks_per_row = 1;      ///< from one row to the next (record.rate_hz)
   std::vector<Topic> topics;  ///< the recorded topics that record.topics selects
   bool ros_types = false;     ///< among them may be those in standard types of ROS 2 (record.ros_types)
+  std::set<int> lost = {};    ///< agents that are lost for some time (events)
 
-  /// Whether the topic has a sample in every row. In real time, agents may miss ticks: their last command is held, and
-  /// commands and messages may be fewer.
+  /// Whether the topic has a sample in every row. In real time, agents may miss ticks, and those that are lost answer
+  /// none: their last command is held, and commands and messages may be fewer.
   bool IsInEveryRow(const Topic& topic) const;
 };
 

@@ -98,7 +98,7 @@ void IndexedRows::Read(std::int64_t at, DecodedRow& row) {
   for (std::size_t i = 0; i < row_.states.size(); ++i) {
     const int id = static_cast<int>(i) + 1;
     Require(row_.states[i], Topic::State(id));
-    if (has_commands() && !rows_.plan.realtime) Require(row_.commands[i], Topic::Command(id));
+    if (has_commands() && rows_.plan.IsInEveryRow(Topic::Command(id))) Require(row_.commands[i], Topic::Command(id));
   }
   std::ranges::fill(row.commands, Command());
   try {

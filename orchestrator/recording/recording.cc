@@ -87,7 +87,7 @@ std::string ConfigUpToTheCut(const std::string& path, const McapContents& conten
     if (contents.channels.at(message.channel).topic != Topic::Event().Name()) return;
     mascot_msgs::msg::Event event;
     Deserialize(message.data, event);
-    if (IsPhase(event.toml())) return;  // stands in [[law.schedule]]
+    if (StandsElsewhere(event.toml())) return;
     config = WithEvent(std::move(config), static_cast<std::int64_t>(event.tick()), rate_hz, event.toml());
   });
   return config;
@@ -138,7 +138,10 @@ Recording::Recording(const std::string& run)
 
 void Recording::ForEachRow(const std::function<void(const Row&)>& on_row) const {
   const RecordingPlan& plan = rows_.plan;
-  RowAssembler assembler({path_, plan.agents, plan.rate_hz, ticks(), has_commands() && !plan.realtime}, on_row);
+  std::vector<int> commanding;
+  for (int id = 1; id <= plan.agents; ++id)
+    if (has_commands() && plan.IsInEveryRow(Topic::Command(id))) commanding.push_back(id);
+  RowAssembler assembler({path_, plan.agents, plan.rate_hz, ticks(), std::move(commanding)}, on_row);
   for (const auto& [id, channel] : contents_.channels) {
     const auto topic = Topic::Parse(channel.topic);
     if (!topic || topic->agent < 1 || topic->agent > plan.agents) continue;

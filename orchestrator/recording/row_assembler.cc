@@ -39,10 +39,8 @@ void RowAssembler::HandOver() {
   auto require = [this](const Row::Bytes& sample, const Topic& topic) {
     if (sample.empty()) Fail("tick " + std::to_string(row_.tick) + " has no " + topic.Name());
   };
-  for (int id = 1; id <= wanted_.agents; ++id) {
-    require(row_.states[static_cast<std::size_t>(id - 1)], Topic::State(id));
-    if (wanted_.every_command) require(row_.commands[static_cast<std::size_t>(id - 1)], Topic::Command(id));
-  }
+  for (int id = 1; id <= wanted_.agents; ++id) require(row_.states[static_cast<std::size_t>(id - 1)], Topic::State(id));
+  for (const int id : wanted_.commands) require(row_.commands[static_cast<std::size_t>(id - 1)], Topic::Command(id));
   on_row_(row_);
   ++next_;
   Begin();

@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "idl/topics.h"
 #include "orchestrator/formats/mcap/reader.h"
@@ -19,9 +20,9 @@ class RowAssembler {
   struct Wanted {
     std::string file;  ///< name of the recording, for error messages
     int agents = 0;
-    int rate_hz = 0;               ///< ticks per simulated second
-    RecordedTicks ticks = {0, 1};  ///< those of the rows to assemble; later samples are ignored
-    bool every_command = false;    ///< whether a row must have every agent's command
+    int rate_hz = 0;                 ///< ticks per simulated second
+    RecordedTicks ticks = {0, 1};    ///< those of the rows to assemble; later samples are ignored
+    std::vector<int> commands = {};  ///< ids of the agents of which each row must have the command
   };
   RowAssembler(const Wanted& wanted, std::function<void(const Row&)> on_row);
   RowAssembler(const RowAssembler&) = delete;

@@ -71,7 +71,8 @@ void Decode(const Row& row, DecodedRow& decoded) {
     decoded.events_so_far = static_cast<int>(HeadOf(state).more);
     decoded.messages[i].clear();
     if (!row.messages[i].empty()) GetMessage(BodyOfMessage(row, Topic::Message(id)), decoded.messages[i]);
-    if (!row.commands[i].empty()) GetCommand(BodyOf(row, Topic::Command(id), kCommandBody), decoded.commands[i]);
+    decoded.has_answered[i] = !row.commands[i].empty();
+    if (decoded.has_answered[i] != 0) GetCommand(BodyOf(row, Topic::Command(id), kCommandBody), decoded.commands[i]);
   }
 }
 
@@ -88,6 +89,9 @@ const Row& RowEncoder::Encode(std::int64_t tick, const DecodedRow& decoded) {
   for (std::size_t i = 0; i < decoded.motions.size(); ++i) {
     const int id = static_cast<int>(i) + 1;
     PutState(tick, rate, id, decoded.events_so_far, decoded.motions[i], BodyIn(row_.states[i], kStateBody));
+    row_.commands[i].clear();
+    row_.messages[i].clear();
+    if (decoded.has_answered[i] == 0) continue;
     PutCommand(tick, rate, id, decoded.commands[i], BodyIn(row_.commands[i], kCommandBody));
     if (!experiment_.agents[i].sends_messages) continue;
     const std::vector<double>& message = decoded.messages[i];

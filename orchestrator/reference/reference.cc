@@ -87,6 +87,7 @@ class Writer {
       text_ += fmt::format("\n### {}{}{}\n\n{}\n", is_list ? "[[" : "[", inner, is_list ? "]]" : "]",
                            Introduction(table, rows));
       WriteKeys(table.keys);
+      if (table.keys.data() == FaultKeys().data()) WriteFaults();
       tables_.push_back({inner, table.keys});
       WriteInner(inner, table.keys);
     }
@@ -116,6 +117,19 @@ class Writer {
   void WriteTopologies() {
     text_ += "\n| topology | which agent hears which |\n|---|---|\n";
     for (const Topology& family : Topologies()) text_ += fmt::format("| `{}` | {} |\n", family.name, family.meaning);
+  }
+
+  void WriteFaults() {
+    text_ +=
+        "\nWhat happens, and the keys that go with it ([faults.md](faults.md)):\n\n| `of` | `kind` | keys | what "
+        "happens |\n"
+        "|---|---|---|---|\n";
+    for (const FaultRow& row : FaultRows()) {
+      std::string keys(row.parameters);
+      for (std::size_t at = 0; (at = keys.find(", ", at)) != std::string::npos; at += 4) keys.replace(at, 2, "`, `");
+      text_ += fmt::format("| `{}` | `{}` | {} | {} |\n", kFaultParts.Name(row.of), kFaultKinds.Name(row.kind),
+                           keys.empty() ? "" : "`" + keys + "`", row.meaning);
+    }
   }
 
   void WriteLaws() {

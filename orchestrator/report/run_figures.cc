@@ -154,6 +154,7 @@ void AddFidelity(const Measured& measured, Figures& figures) {
   figures.Add("fidelity.max_m", fidelity ? FigureValue(fidelity->max_m) : FigureValue());
   figures.Add("fidelity.travelled_m", measured.travelled_m);
   figures.AddWords("fidelity.failure", measured.fidelity_failure);
+  figures.AddWords("fidelity.fault", measured.fidelity_fault);
 }
 
 void AddRealtime(const std::optional<Pacing>& pacing, Figures& figures) {

@@ -90,6 +90,8 @@ std::string FidelityText(const Experiment& experiment, const Figures& figures) {
   std::string text;
   if (const std::string failure = figures.Words("fidelity.failure"); !failure.empty())
     text += "fidelity       not measured, the law failed on " + IdealBodies(experiment) + ": " + failure + "\n";
+  if (const std::string fault = figures.Words("fidelity.fault"); !fault.empty())
+    text += "fidelity       not measured: there are no ideal bodies since " + fault + "\n";
   const auto rms_m = figures.Number("fidelity.rms_m");
   const double travelled_m = figures.Known("fidelity.travelled_m");
   constexpr double kSome_m = 0.05;  // less would be written as "0.0 m", and nothing is a share of that

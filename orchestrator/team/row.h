@@ -8,8 +8,8 @@
 
 namespace mascot {
 
-/// The serialized samples of one tick, agents by id - 1. Empty bytes: not sent (only in real time, where an agent may
-/// miss a tick).
+/// The serialized samples of one tick, agents by id - 1. Empty bytes: not sent, by an agent that is lost or, in real
+/// time, has missed the tick.
 struct Row {
   using Bytes = std::vector<std::uint8_t>;
   std::int64_t tick = -1;
@@ -34,10 +34,14 @@ struct DecodedRow {
   };
 
   explicit DecodedRow(int agents)
-      : motions(static_cast<std::size_t>(agents)), commands(motions.size()), messages(motions.size()) {}
+      : motions(static_cast<std::size_t>(agents)),
+        commands(motions.size()),
+        has_answered(motions.size(), true),
+        messages(motions.size()) {}
 
   std::vector<Motion> motions;
   std::vector<Command> commands;              ///< a missing command keeps the value of the previous row (zero at first)
+  std::vector<char> has_answered;             ///< whether the row has the agent's command
   std::vector<std::vector<double>> messages;  ///< empty: none was sent
   std::vector<RowEvent> events;               ///< in order
   int events_so_far = 0;                      ///< number of the last event up to this tick; 0: there was no event

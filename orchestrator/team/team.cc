@@ -11,13 +11,17 @@ Team::Team(const Experiment& experiment, Crew& crew) : crew_(crew), exchange_(ex
   const std::size_t agents = experiment.agents.size(), parts = crew.PartsOf(agents, kMinAgentsPerThread);
   for (const AgentConfig& config : experiment.agents) agents_.push_back(std::make_unique<Agent>(experiment, config.id));
   takes_turns_ = AnyAsksCodeOfUser();
+  has_answered_.assign(agents, true);
   for (std::size_t k = 0; k < parts; ++k)
     parts_.emplace_back(
         experiment, AgentRange{static_cast<int>(k * agents / parts) + 1, static_cast<int>((k + 1) * agents / parts)});
 }
 
 void Team::Adopt(const std::shared_ptr<const Experiment>& now) {
-  for (const auto& agent : agents_) agent->Adopt(now);
+  for (std::size_t i = 0; i < agents_.size(); ++i) {
+    agents_[i]->Adopt(now);
+    has_answered_[i] = !agents_[i]->is_lost();
+  }
   takes_turns_ = AnyAsksCodeOfUser();
 }
 
@@ -34,7 +38,9 @@ void Team::ForEachPart(Work&& work) {
   exchange_.EndTick();
 }
 
-void Team::Decide(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands) {
+void Team::Decide(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands,
+                  std::span<const int> silent) {
+  for (const int id : silent) has_answered_[static_cast<std::size_t>(id - 1)] = false;
   ForEachPart([&](Part& part) {
     Want(tick, motions, commands, part);
     Actuate(commands, part);
@@ -48,6 +54,10 @@ void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Co
 void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands, Part& part) {
   for (int id = part.ids.first; id <= part.ids.last; ++id) {
     const auto i = static_cast<std::size_t>(id - 1);
+    if (!HasAnswered(id)) {
+      exchange_.Send(id, {});
+      continue;
+    }
     Agent& agent = *agents_[i];
     commands[i] = agent.Want(tick, motions[i], exchange_.SamplesFor(id, motions, part.samples));
     exchange_.Send(id, agent.message());
@@ -57,8 +67,13 @@ void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Co
 void Team::Actuate(std::span<Command> commands, Part& part) {
   const auto first = static_cast<std::size_t>(part.ids.first - 1);
   const std::span<Command> own = commands.subspan(first, part.driven.size());
-  for (std::size_t k = 0; k < own.size(); ++k) part.driven[k] = agents_[first + k]->Driven(own[k]);
+  part.kept.clear();
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    if (has_answered_[first + k] == 0) part.kept.emplace_back(k, own[k]);
+    part.driven[k] = agents_[first + k]->Driven(own[k]);
+  }
   part.low_level.Actuate(part.driven, own);
+  for (const auto& [k, command] : part.kept) own[k] = command;
 }
 
 }  // namespace mascot

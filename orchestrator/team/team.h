@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "agent/agent.h"
@@ -23,10 +24,14 @@ class Team {
   /// Call it when events have changed the experiment: from the next tick on, the experiment is `now`.
   void Adopt(const std::shared_ptr<const Experiment>& now);
   /// The complete commands of all agents, by id - 1. `motions`: their states at this tick. Messages that are sent
-  /// during this tick arrive at the next one. Throws what Agent::Want throws, for the first agent that fails.
-  void Decide(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands);
+  /// during this tick arrive at the next one. Agents that are lost, or in `silent`, decide nothing and send nothing;
+  /// their commands stay as they are. Throws what Agent::Want throws, for the first agent that fails.
+  void Decide(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands,
+              std::span<const int> silent = {});
   /// As Decide, but without the low-level stacks: the commands are those of Agent::Want.
   void Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands);
+  /// Whether agent `id` has answered the last tick.
+  bool HasAnswered(int id) const { return has_answered_[static_cast<std::size_t>(id - 1)] != 0; }
   /// The message that agent `id` sent last.
   std::span<const double> message(int id) const { return agents_[static_cast<std::size_t>(id - 1)]->message(); }
 
@@ -37,7 +42,8 @@ class Team {
     AgentRange ids;
     LowLevel low_level;
     std::vector<Controller::Input> driven;
-    std::vector<Sample> samples;  // scratch
+    std::vector<Sample> samples;                        // scratch
+    std::vector<std::pair<std::size_t, Command>> kept;  // of agents that have not answered, by index in the part
   };
 
   bool AnyAsksCodeOfUser() const;
@@ -48,6 +54,7 @@ class Team {
 
   Crew& crew_;
   bool takes_turns_ = false;
+  std::vector<char> has_answered_;  // by id - 1; no vector<bool>: threads write it
   std::vector<std::unique_ptr<Agent>> agents_;
   std::vector<Part> parts_;
   Exchange exchange_;

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "agent/link.h"
+#include "base/ticks.h"
 
 namespace mascot {
 
 std::vector<DelayInEffect> DelaysInEffect(const Experiment& experiment) {
   std::vector<DelayInEffect> delays;
   const auto add = [&](const char* key, double asked_s, double jitter_s) {
-    const auto ticks = [&](double time_s) { return Link::Ticks(time_s, experiment.control.rate_hz); };
+    const auto ticks = [&](double time_s) { return TicksRoundedUp(time_s, experiment.control.rate_hz); };
     const DelayInEffect delay{key, asked_s, jitter_s, ticks(asked_s - jitter_s), ticks(asked_s + jitter_s)};
     if (asked_s > 0 && std::ranges::find(delays, delay) == delays.end()) delays.push_back(delay);
   };

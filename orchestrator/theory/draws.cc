@@ -57,6 +57,10 @@ void AddLink(const LinkConfig& link, Keys& keys) {
   AddOnce("link.reordering", link.delay_s > 0 && IsChance(link.reordering), keys);
 }
 
+bool Draws(const Fault& fault) {
+  return fault.kind == FaultKind::kGarbage || (fault.kind == FaultKind::kIntermittent && IsChance(fault.probability));
+}
+
 /// What is drawn in flight, as the experiment is at some time.
 void AddInFlight(Dice::Stream stream, const Experiment& now, Keys& keys) {
   const auto is_heard = [&](int id) {
@@ -80,6 +84,12 @@ void AddInFlight(Dice::Stream stream, const Experiment& now, Keys& keys) {
         AddOnce("agents.override.lie", agent.lie && agent.lie->kind == FalseDataKind::kRandom && is_heard(agent.id),
                 keys);
       return;
+    case Dice::Stream::kFaultySensor:
+    case Dice::Stream::kFaultyMotor:
+    case Dice::Stream::kFaultyLink:
+      for (const AgentConfig& agent : now.agents)
+        for (const PartFault& part : agent.faults.parts) AddOnce("events.fault", Draws(part.fault), keys);
+      return;
   }
 }
 
@@ -93,12 +103,14 @@ bool MayDraw(const Event& event, bool laws_draw) {
     const std::string table = entry.first.substr(0, entry.first.find('.'));
     return table != "control" && table != "run" && (table != "law" || laws_draw);
   };
-  return event.law.has_value() || std::ranges::any_of(event.set, may);
+  return event.law.has_value() || event.fault.has_value() || std::ranges::any_of(event.set, may);
 }
 
 void AddAll(const Experiment& now, Keys& keys) {
   using enum Dice::Stream;
-  for (const Dice::Stream stream : {kLink, kOwnSensor, kHeardSensor, kWind, kFalseData}) AddInFlight(stream, now, keys);
+  for (const Dice::Stream stream :
+       {kLink, kOwnSensor, kHeardSensor, kWind, kFalseData, kFaultySensor, kFaultyMotor, kFaultyLink})
+    AddInFlight(stream, now, keys);
   for (const AgentConfig& agent : now.agents) {
     const LawEntry& law = EntryOf(agent.law);
     AddOnce("law", law.draws != nullptr && law.draws(agent.law), keys);

@@ -8,8 +8,8 @@
 
 #include "agent/laws/laws.h"
 #include "agent/laws/parts/reach.h"
-#include "agent/link.h"
 #include "base/linear_algebra.h"
+#include "base/ticks.h"
 #include "orchestrator/theory/from_start.h"
 #include "orchestrator/theory/linear_team.h"
 #include "orchestrator/theory/links_on_average.h"
@@ -53,7 +53,7 @@ class LinearCase {
   std::optional<double> OwnMargin() const;
   /// The delay that one of `delay_s` amounts to: a whole number of control periods (s).
   double InPeriods(double delay_s) const {
-    return experiment_.time_s(Link::Ticks(delay_s, experiment_.control.rate_hz));
+    return experiment_.time_s(TicksRoundedUp(delay_s, experiment_.control.rate_hz));
   }
   bool Exceeds(double delay_s, std::optional<double> margin_s) const {
     return margin_s && InPeriods(delay_s) > *margin_s - experiment_.period_s() / 2;

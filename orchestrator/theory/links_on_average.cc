@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "agent/link.h"
+#include "base/ticks.h"
 
 namespace mascot {
 namespace {
@@ -17,7 +17,7 @@ bool AnyLink(const Experiment& experiment, Property property) {
 }
 
 /// Whether the link puts an older sample in the place of a lost one.
-bool Holds(const LinkConfig& link, int rate_hz) { return Link::HoldTicks(link.hold_s, rate_hz) > 0; }
+bool Holds(const LinkConfig& link, int rate_hz) { return TicksRoundedDown(link.hold_s, rate_hz) > 0; }
 
 }  // namespace
 
@@ -54,11 +54,11 @@ double MinDeliveredUnheld(const Experiment& experiment) {
 }
 
 std::int64_t DelayTicks(const Experiment& experiment, int hearer, int heard) {
-  return Link::Ticks(experiment.links.Of(hearer, heard).delay_s, experiment.control.rate_hz);
+  return TicksRoundedUp(experiment.links.Of(hearer, heard).delay_s, experiment.control.rate_hz);
 }
 
 std::int64_t OwnDelayTicks(const Experiment& experiment) {
-  return Link::Ticks(experiment.sensors.own_delay_s, experiment.control.rate_hz);
+  return TicksRoundedUp(experiment.sensors.own_delay_s, experiment.control.rate_hz);
 }
 
 std::int64_t LongestDelayTicks(const Experiment& experiment) {

@@ -142,9 +142,11 @@ TEST(Events, ThatSpoilAnotherKeyAreRefusedAtTheirOwnPlace) {
 }
 
 TEST(Events, AreOfOneKind) {
-  EXPECT_EQ(RefusalOf(""), "folder/test.toml:11:1: events[0]: expected one of set, goto, graph, cut, mend, got none");
+  EXPECT_EQ(RefusalOf(""),
+            "folder/test.toml:11:1: events[0]: expected one of set, goto, graph, cut, mend, fault, restart, got none");
   EXPECT_EQ(RefusalOf("cut = [[1, 2]]\nmend = [[1, 3]]"),
-            "folder/test.toml:11:1: events[0]: expected one of set, goto, graph, cut, mend, got cut and mend");
+            "folder/test.toml:11:1: events[0]: expected one of set, goto, graph, cut, mend, fault, restart, got cut "
+            "and mend");
   EXPECT_EQ(RefusalOf("cut = [[1, 2]]\nagents = [1]"),
             "folder/test.toml:14:10: events[0].agents: expected only with set, got cut");
 }

@@ -722,7 +722,7 @@ TEST(Experiment, FindsMistakesOfDifferentTablesAtOnce) {
 }
 
 TEST(Experiment, KnowsOnlyKeysThatDoSomething) {
-  for (const std::string later : {"run.on_agent_loss = 'hold'", "network.compression = 'zstd'", "law.file = 'x.py'"})
+  for (const std::string later : {"run.deterministic = true", "network.compression = 'zstd'", "law.file = 'x.py'"})
     EXPECT_THAT(Mistakes(Config(later + "\n")), ElementsAre(HasSubstr("unknown key"))) << later;
 }
 

@@ -57,7 +57,7 @@ TEST(MistakesOfSet, StandAtSet) {
        "law.name: expected graph.range_m, within which agents hear each other, for the law "
        "rendezvous, got none"},
       {"law.name=waypoint", "law.waypoints_m: expected "},
-      {"events=[{at_s=1}]", "events[0]: expected one of set, goto, graph, cut, mend, got none"},
+      {"events=[{at_s=1}]", "events[0]: expected one of set, goto, graph, cut, mend, fault, restart, got none"},
   };
   for (const Row& row : rows) {
     const auto equals = row.set.find('=');

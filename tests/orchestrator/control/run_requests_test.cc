@@ -133,7 +133,7 @@ TEST(RunRequests, RefusesInTheWordsOfTheFileAndChangesNothing) {
             "event by hand: law: expected a phase in [[law.schedule]] of the file, got one by hand");
   EXPECT_EQ(refusal("law = 3"), "event by hand: law: expected a table, got a number");
   EXPECT_THAT(refusal("cut = [["), StartsWith("event by hand:1:9: "));
-  EXPECT_EQ(refusal(""), "event by hand: expected one of set, goto, graph, cut, mend, got none");
+  EXPECT_EQ(refusal(""), "event by hand: expected one of set, goto, graph, cut, mend, fault, restart, got none");
   run.Ask({.kind = Kind::kStop});
   run.Join();
   EXPECT_TRUE(run.kept.events.empty());

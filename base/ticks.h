@@ -1,0 +1,24 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace mascot {
+
+namespace ticks_internal {
+constexpr double kRounding = 1e-6;  // tolerance for rounding, in ticks
+}
+
+/// The ticks that `time_s` takes, rounded up; but a time that is a whole number of ticks except for a rounding error is
+/// that number.
+inline std::int64_t TicksRoundedUp(double time_s, int rate_hz) {
+  return std::max<std::int64_t>(0, std::llround(std::ceil(time_s * rate_hz - ticks_internal::kRounding)));
+}
+
+/// Likewise, rounded down.
+inline std::int64_t TicksRoundedDown(double time_s, int rate_hz) {
+  return std::llround(std::floor(time_s * rate_hz + ticks_internal::kRounding));
+}
+
+}  // namespace mascot
