@@ -28,6 +28,8 @@ class Controller {
   virtual ~Controller() = default;
   /// Called once per tick, with an input and an output for each agent.
   virtual void Actuate(std::span<const Input> inputs, std::span<Output> outputs) = 0;
+  /// The stack of agent `i` of them forgets all: what it keeps begins anew from what the next Actuate() gets.
+  virtual void Restart(std::size_t /*i*/) {}
 };
 
 /// A controller whose agents' stacks are computed one after the other: objects with an Actuate() of their own.

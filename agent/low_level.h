@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,6 +15,8 @@ namespace mascot {
 class LowLevel {
  public:
   LowLevel(const Experiment& experiment, AgentRange agents);
+  /// Call it when events have changed the experiment: the stacks of agents that are fresh forget all.
+  void Adopt(const Experiment& now);
   /// Called once per tick, by agent: adds the actuators and the stack's flags to each command. Agent::Driven() tells
   /// the inputs.
   void Actuate(std::span<const Controller::Input> inputs, std::span<Command> commands);
@@ -26,6 +29,8 @@ class LowLevel {
     std::vector<Controller::Input> inputs;
     std::vector<Controller::Output> outputs;
   };
+  AgentRange agents_;
+  std::vector<std::int64_t> restarted_;  // by agent: the tick at which it was fresh
   std::vector<Group> groups_;
 };
 

@@ -136,6 +136,12 @@ class Matches {
     const std::lock_guard lock(mutex_);
     return number_;
   }
+  /// Whether the participant of some endpoint is as wanted.
+  template <class IsWanted>
+  bool Any(const IsWanted& is_wanted) const {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(endpoints_, [&](const Guid& guid) { return is_wanted(guid.guidPrefix); });
+  }
   /// Number of processes, where `process_of` names the process of an endpoint, or nothing if it does not count.
   template <class ProcessOf>
   int Processes(const ProcessOf& process_of) const {
@@ -175,6 +181,9 @@ class WriterBase::Listener : public dds::DataWriterListener {
     if (peers == nullptr) return matches_.Number();
     return matches_.Processes([peers](const Peers::GuidPrefix& reader) { return peers->ProcessOf(reader); });
   }
+  bool HasReaderOf(const std::string& process) const {
+    return matches_.Any([&](const Peers::GuidPrefix& reader) { return domain_.peers_->ProcessOf(reader) == process; });
+  }
 
  private:
   Domain& domain_;
@@ -195,6 +204,8 @@ WriterBase::WriterBase(Domain& domain, const Topic& topic, dds::TypeSupport type
 WriterBase::~WriterBase() = default;
 
 int WriterBase::matched() const { return listener_->matched(); }
+
+bool WriterBase::HasReaderOf(const std::string& process) const { return listener_->HasReaderOf(process); }
 
 bool WriterBase::AwaitReaders(std::chrono::milliseconds timeout) {
   return writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(1e-3L * timeout.count())) ==
@@ -252,7 +263,8 @@ class ReaderBase::Listener : public dds::DataReaderListener {
     if (domain_.peers_ == nullptr || writer == writer_) return true;
     std::string process = domain_.peers_->Believe(topic_, writer.guidPrefix);
     if (process.empty()) return false;
-    if (HasOneWriter(topic_) && !process_.empty()) {
+    const bool is_there = !process_.empty() && !domain_.peers_->WriterOf(topic_, writer_.guidPrefix).empty();
+    if (HasOneWriter(topic_) && is_there) {
       domain_.peers_->RefuseSecond(topic_, writer.guidPrefix);
       return false;
     }

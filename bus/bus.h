@@ -112,6 +112,8 @@ class WriterBase {
  public:
   /// Number of the run's processes that have a matched reader now; without Peers, the number of those readers.
   int matched() const;
+  /// Whether this process of the run has a matched reader now. For domains with Peers.
+  bool HasReaderOf(const std::string& process) const;
   /// Waits until all matched readers have acknowledged every sample, at most `timeout`. Returns whether they have. Call
   /// it before the process ends: its shared memory goes with it, and samples that are not read by then are lost.
   bool AwaitReaders(std::chrono::milliseconds timeout);

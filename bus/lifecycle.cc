@@ -29,13 +29,14 @@ Lifecycle::Lifecycle(Domain& domain, Peers& peers, StopSignal& stop, const std::
   status_.agent(static_cast<std::uint32_t>(agent));
 }
 
-mascot_msgs::msg::Experiment Lifecycle::AwaitExperiment(std::chrono::seconds timeout) {
+mascot_msgs::msg::Experiment Lifecycle::AwaitExperiment(std::chrono::seconds timeout, std::int64_t from_tick) {
   const auto deadline = Clock::now() + timeout;
   int listeners = 0;
   for (auto ask_again = Clock::now(); Clock::now() < deadline;) {
     {
       const std::lock_guard lock(mutex_);
-      if (experiment_) {
+      if (experiment_ && std::cmp_greater_equal(experiment_->from_tick(), from_tick)) {
+        status_.from_tick(experiment_->from_tick());
         status_.experiment(DigestOf(*experiment_));  // what this process will fly, whatever comes later
         return *experiment_;
       }
@@ -81,6 +82,8 @@ void Lifecycle::Report(const RunProgress& progress) {
     status_.request_tick(progress.request_tick);
     status_.paused(progress.paused);
     status_.pace(progress.pace);
+    status_.events(static_cast<std::uint32_t>(progress.events));
+    status_.awaited().assign(progress.awaited.begin(), progress.awaited.end());
   }
   Publish();
 }

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/contacts.h"
 #include "base/pacing.h"
@@ -31,7 +32,9 @@ struct RunProgress {
   std::uint32_t request = 0;      ///< number of the newest request carried out; 0: none yet
   std::int64_t request_tick = 0;  ///< the first tick for which this request holds; kOver or kTooLate: there is none
   bool paused = false;
-  double pace = 0;  ///< simulated seconds per second; 0: as fast as the machine can
+  double pace = 0;                ///< simulated seconds per second; 0: as fast as the machine can
+  int events = 0;                 ///< how many have taken effect
+  std::vector<int> awaited = {};  ///< agents whose fresh processes the next tick waits for
 };
 
 /// The message of a process that has waited so long for an experiment.
@@ -48,9 +51,9 @@ class Lifecycle {
   /// processes of the run.
   Lifecycle(Domain& domain, Peers& peers, StopSignal& stop, const std::string& process, int agent);
 
-  /// Publishes WAITING every 0.2 s, and as soon as somebody listens, until the experiment comes. Throws
-  /// std::runtime_error after `timeout`, and what Wait() throws.
-  mascot_msgs::msg::Experiment AwaitExperiment(std::chrono::seconds timeout);
+  /// Publishes WAITING every 0.2 s, and as soon as somebody listens, until the experiment comes, for processes that
+  /// start at `from_tick`. Throws std::runtime_error after `timeout`, and what Wait() throws.
+  mascot_msgs::msg::Experiment AwaitExperiment(std::chrono::seconds timeout, std::int64_t from_tick = 0);
   /// Publishes a new state. Thread-safe.
   void Set(Life life, const std::string& reason = {});
   /// Publishes the last state before this process ends, and waits until all readers have acknowledged it, at most 3 s:

@@ -32,10 +32,14 @@ bool HasOneWriter(const Topic& topic) {
 void Peers::Know(const std::string& process, const ProcessKey& key) {
   const std::lock_guard lock(mutex_);
   const auto entry = std::ranges::find(entries_, process, &Entry::process);
-  if (entry == entries_.end())
+  if (entry == entries_.end()) {
     entries_.push_back({process, key});
-  else if (key.IsExact())
+  } else if (key.IsExact()) {
     entry->key = key;
+  } else if (key.IsOfPid() && !key.Fits(entry->key)) {
+    *entry = {process, key};
+    ++version_;
+  }
 }
 
 std::vector<Peers::Place> Peers::Places() const {

@@ -33,12 +33,13 @@ class Peers {
   using GuidPrefix = ProcessKey::GuidPrefix;
   using Place = std::pair<std::string, ProcessKey>;  ///< name of a process, and the participants that fit it
 
-  /// Notes that there is such a process, and what is known of it. An exact key replaces what was known before; another
-  /// key does not.
+  /// Notes that there is such a process, and what is known of it. An exact key replaces what was known before, and so
+  /// does the key of another process id: a fresh process has taken the place. Another key does not.
   void Know(const std::string& process, const ProcessKey& key);
   /// All places, for other processes.
   std::vector<Place> Places() const;
-  /// A number that grows whenever a place is taken by name, or becomes free: other processes must then be told.
+  /// A number that grows whenever a place is taken by name or by a fresh process, or becomes free: other processes must
+  /// then be told.
   std::uint64_t version() const;
 
   /// Call it when a participant of this name has been discovered. If the participant fits, it takes the place of its

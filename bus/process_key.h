@@ -31,6 +31,8 @@ class ProcessKey {
   bool Fits(const ProcessKey& exact) const { return (exact.bits_ & mask_) == bits_; }
   /// Whether no other process can fit.
   bool IsExact() const { return mask_ == ~std::uint64_t{0}; }
+  /// Whether it is as WithPid() makes it.
+  bool IsOfPid() const { return mask_ != 0 && !IsExact(); }
   bool IsNobody() const { return mask_ == 0 && bits_ != 0; }
   bool IsWildcard() const { return mask_ == 0 && bits_ == 0; }
   std::uint64_t bits() const { return bits_; }

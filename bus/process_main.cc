@@ -201,7 +201,7 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
   std::optional<mascot_msgs::msg::Experiment> experiment;
   int code = 1;
   try {
-    experiment = lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s));
+    experiment = lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s), args.from_tick);
     role = make_role(domain, lifecycle, *experiment);
     role->Run();
   } catch (const Ended& ended) {
@@ -241,6 +241,8 @@ void ProcessArgs::AddTo(CLI::App& app) {
       ->check(CLI::Range(0, 119));
   app.add_option("--awaits", awaited, "How many participants this one waits for before it makes readers and writers")
       ->check(CLI::Range(0, 20000));
+  app.add_option("--from-tick", from_tick, "The first tick that this process answers, after a restart")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));
   app.add_option("--parent", parent, "Process id of the program that spawned this process: end when it dies");
   app.add_option("--orchestrator", orchestrator, "Process id of the orchestrator, if it is on another host");
   app.add_option("--address", options.address, "IPv4 address of the interface to use (default: all)");

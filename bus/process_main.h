@@ -24,7 +24,8 @@ struct ProcessArgs {
   int awaited = 0;  ///< how many participants to discover before readers and writers are made, at most kTimeToDiscover
   /// Pid of the process that started this one, which ends with it; 0: this one was started by hand.
   int parent = 0;
-  int orchestrator = 0;  ///< pid of the orchestrator, if that is not the parent but on another host
+  std::int64_t from_tick = 0;  ///< the first tick to answer: 0, or that of a restart
+  int orchestrator = 0;        ///< pid of the orchestrator, if that is not the parent but on another host
   bool is_agent = false;
 
   explicit ProcessArgs(bool agent_process) : is_agent(agent_process) {}

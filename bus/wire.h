@@ -50,7 +50,7 @@ constexpr bool IsLast(Life life) { return life >= Life::kDone; }
 /// last_tick + 1. `last_tick` is the last tick of the run.
 Life CheckedLife(const mascot_msgs::msg::Status& status, std::int64_t last_tick);
 /// Values of Request::kind: what the orchestrator asks of a process.
-enum class Ask : std::uint8_t { kReport = 0, kStop, kEnd, kPause, kResume, kStep, kPace, kEvent };
+enum class Ask : std::uint8_t { kReport = 0, kStop, kEnd, kPause, kResume, kStep, kPace, kEvent, kLose };
 /// Values of Status::request_tick for a request that took effect at no tick: kOver, the run was over; kTooLate, an
 /// event came too late.
 inline constexpr std::int64_t kOver = -1, kTooLate = -2;

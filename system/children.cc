@@ -138,6 +138,17 @@ void Children::Kill() {
   WaitAll(kLongestDeath);
 }
 
+void Children::Kill(const std::string& process) {
+  const auto is_it = [&](const Child& child) { return child.name == process; };
+  for (Child& child : running_)
+    if (is_it(child)) child.process.Signal(SIGKILL);
+  const auto deadline = WallClock::now() + kLongestDeath;
+  while (std::ranges::any_of(running_, is_it) && WallClock::now() < deadline) {
+    std::erase_if(running_, [&](Child& child) { return is_it(child) && child.process.ReapIfEnded(); });
+    poll(nullptr, 0, 2);
+  }
+}
+
 void Children::Signal(int signal) {
   for (const Child& child : running_) child.process.Signal(signal);
 }

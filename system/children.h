@@ -75,6 +75,8 @@ class Children {
   bool empty() const { return running_.empty(); }
   /// Sends SIGKILL to all children and reaps them.
   void Kill();
+  /// The same for the children of this name: Reap() does not tell of them.
+  void Kill(const std::string& process);
 
  private:
   void Signal(int signal);

@@ -6,9 +6,9 @@
 //   attitude:   tau = J (kp (phi* - phi) - kd phi')                same for theta; psi goes to control.heading_rad
 //   rotors:     [w1^2 .. w4^2] = A^-1 [T, tau]
 // The reference p*, v* is the ideal double integrator of the theory: it starts where the agent starts, and integrates
-// the limited accelerations of the law. Tracking it gives back the velocity that the body loses while it tilts. With
-// law.axes = "xy", z* stays the initial height and v_z* = 0. Gains: airframe.position in x and y, airframe.altitude in
-// z.
+// the limited accelerations of the law; where a fresh agent takes the place of one, it begins anew. Tracking it gives
+// back the velocity that the body loses while it tilts. With law.axes = "xy", z* stays the initial height and v_z* = 0.
+// Gains: airframe.position in x and y, airframe.altitude in z.
 //
 // Agents are computed several at once (agent/controllers/lanes/actuate_in_lanes.h), to the same bits whatever the
 // number of lanes.
@@ -16,6 +16,8 @@
 
 #include <Eigen/LU>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "agent/controllers/lanes/quadrotor_kernel.h"
 #include "base/lane_numbers.h"
@@ -51,6 +53,13 @@ class QuadrotorController final : public Controller {
       Put(self.w_WB_B, i, F::kWInB);
       Put(inputs[i].wanted_W, i, F::kWanted);
     }
+    for (const std::size_t i : std::exchange(fresh_, {})) {
+      const int axes = numbers_.At(i, F::kHoldsAltitude) != 0 ? 2 : 3;
+      for (int axis = 0; axis < axes; ++axis) {
+        numbers_.At(i, F::kPRef + axis) = numbers_.At(i, F::kP + axis);
+        numbers_.At(i, F::kVRef + axis) = numbers_.At(i, F::kV + axis);
+      }
+    }
     kernel_.actuate(numbers_.Block(0), numbers_.blocks());
     for (std::size_t i = 0; i < outputs.size(); ++i) {
       Output& output = outputs[i];
@@ -59,6 +68,8 @@ class QuadrotorController final : public Controller {
                      (numbers_.At(i, F::kIsRotorLimited) != 0 ? kRotorLimited : 0u);
     }
   }
+
+  void Restart(std::size_t i) override { fresh_.push_back(i); }
 
  private:
   template <class Vector>
@@ -102,6 +113,7 @@ class QuadrotorController final : public Controller {
 
   QuadrotorKernel kernel_;
   LaneNumbers numbers_;
+  std::vector<std::size_t> fresh_;  // whose references begin anew
 };
 
 }  // namespace

@@ -38,10 +38,10 @@ void AgentRunner::OnState(std::size_t source, std::int64_t tick, const Motion& m
   if (const auto complete = inbox_.OnState(source, tick, motion, events)) Answer(*complete);
 }
 
-void AgentRunner::OnEvent(int number, const std::shared_ptr<const Experiment>& now) {
+void AgentRunner::OnEvent(int number, const Event& event, const std::shared_ptr<const Experiment>& now) {
   const std::lock_guard lock(mutex_);
   events_.emplace_back(number, now);
-  if (const auto complete = inbox_.OnEvent(number)) Answer(*complete);
+  if (const auto complete = inbox_.OnEvent(number, event)) Answer(*complete);
 }
 
 void AgentRunner::OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data) {
@@ -51,13 +51,17 @@ void AgentRunner::OnMessage(std::size_t source, std::int64_t tick, std::span<con
 
 void AgentRunner::TakeEvents(int events) {
   std::shared_ptr<const Experiment> now;
-  for (; !events_.empty() && events_.front().first <= events; events_.pop_front()) now = events_.front().second;
-  if (now) agent_.Adopt(now);
+  for (; !events_.empty() && events_.front().first <= events; events_.pop_front())
+    if (events_.front().second) now = events_.front().second;
+  if (!now) return;
+  agent_.Adopt(now);
+  low_level_.Adopt(*now);
 }
 
 void AgentRunner::Answer(const TickInbox::CompleteTick& complete) {
   const std::int64_t tick = complete.tick;
   TakeEvents(complete.events);
+  if (agent_.is_lost()) return;
   Command command = agent_.Want(tick, *complete.self, complete.samples);
   const Controller::Input driven = agent_.Driven(command);
   low_level_.Actuate({&driven, 1}, {&command, 1});

@@ -35,8 +35,8 @@ class AgentRunner {
   // their threads.
   void OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events);
   void OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
-  /// `now` is the experiment after event `number`.
-  void OnEvent(int number, const std::shared_ptr<const Experiment>& now);
+  /// `now` is the experiment after the event.
+  void OnEvent(int number, const Event& event, const std::shared_ptr<const Experiment>& now);
 
  private:
   /// Lets the agent adopt what the first `events` events have made of the experiment.

@@ -1,5 +1,6 @@
 #include "agent/process/agents_on_bundles.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -37,40 +38,43 @@ void AgentsOnBundles::OnBundle(const RawReader::Bytes& bytes) {
   }
 }
 
-void AgentsOnBundles::OnEvent(int number, const std::shared_ptr<const Experiment>& now) {
+void AgentsOnBundles::OnEvent(int number, const Event& event, const std::shared_ptr<const Experiment>& now) {
   const std::lock_guard lock(mutex_);
   events_.emplace_back(number, now);
-  if (inbox_.OnEvent(number)) Answer();
+  if (inbox_.OnEvent(number, event)) Answer();
 }
 
 void AgentsOnBundles::TakeEvents(int events) {
   std::shared_ptr<const Experiment> now;
-  for (; !events_.empty() && events_.front().first <= events; events_.pop_front()) now = events_.front().second;
+  for (; !events_.empty() && events_.front().first <= events; events_.pop_front())
+    if (events_.front().second) now = events_.front().second;
   if (!now) return;
   for (const auto& agent : agents_) agent->Adopt(now);
+  low_level_.Adopt(*now);
 }
 
 void AgentsOnBundles::Answer() {
   const std::int64_t tick = inbox_.tick();
   const int rate_hz = experiment_.control.rate_hz;
   TakeEvents(inbox_.events());
+  inbox_.Answered();
+  if (std::ranges::all_of(agents_, [](const auto& agent) { return agent->is_lost(); })) return;
   for (std::size_t i = 0; i < agents_.size(); ++i) {
     const int id = agents_[i]->id();
-    commands_[i] = agents_[i]->Want(tick, inbox_.MotionOf(id), inbox_.SamplesOf(id));
+    if (!agents_[i]->is_lost()) commands_[i] = agents_[i]->Want(tick, inbox_.MotionOf(id), inbox_.SamplesOf(id));
     driven_[i] = agents_[i]->Driven(commands_[i]);
   }
   low_level_.Actuate(driven_, commands_);
   sample_.Begin(tick);
   sample_.BeginSection();
   for (std::size_t i = 0; i < agents_.size(); ++i)
-    PutCommand(tick, rate_hz, agents_[i]->id(), commands_[i], sample_.Add(kCommandBody));
+    if (!agents_[i]->is_lost()) PutCommand(tick, rate_hz, agents_[i]->id(), commands_[i], sample_.Add(kCommandBody));
   sample_.BeginSection();
   for (const auto& agent : agents_) {
-    if (!experiment_.agent(agent->id()).sends_messages) continue;
+    if (agent->is_lost() || !experiment_.agent(agent->id()).sends_messages) continue;
     const std::span<const double> message = agent->message();
     PutMessage(tick, rate_hz, agent->id(), message, sample_.Add(MessageBody(message.size())));
   }
-  inbox_.Answered();
   answers_.Write(sample_.bytes());
   if (!has_answered_.exchange(true)) on_first_answer_();
 }

@@ -27,7 +27,7 @@ class AgentsOnBundles final : public AgentsOnWire {
 
   bool Matched() const override { return bundles_.matched() >= 1 && answers_.matched() >= 1; }
   bool HaveAnswered() const override { return has_answered_; }
-  void OnEvent(int number, const std::shared_ptr<const Experiment>& now) override;
+  void OnEvent(int number, const Event& event, const std::shared_ptr<const Experiment>& now) override;
 
  private:
   void OnBundle(const RawReader::Bytes& bytes);

@@ -51,8 +51,8 @@ void AgentsOnTopics::ListenToMessages(Domain& domain) {
   }
 }
 
-void AgentsOnTopics::OnEvent(int number, const std::shared_ptr<const Experiment>& now) {
-  for (const auto& runner : runners_) runner->OnEvent(number, now);
+void AgentsOnTopics::OnEvent(int number, const Event& event, const std::shared_ptr<const Experiment>& now) {
+  for (const auto& runner : runners_) runner->OnEvent(number, event, now);
 }
 
 bool AgentsOnTopics::HaveAnswered() const {

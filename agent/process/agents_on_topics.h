@@ -20,7 +20,7 @@ class AgentsOnTopics final : public AgentsOnWire {
 
   bool Matched() const override;
   bool HaveAnswered() const override;
-  void OnEvent(int number, const std::shared_ptr<const Experiment>& now) override;
+  void OnEvent(int number, const Event& event, const std::shared_ptr<const Experiment>& now) override;
 
  private:
   /// A runner that needs a sample, and the sender's index among the sources of that runner.

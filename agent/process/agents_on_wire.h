@@ -15,8 +15,9 @@ class AgentsOnWire {
   virtual bool Matched() const = 0;
   /// Whether each agent has answered a tick.
   virtual bool HaveAnswered() const = 0;
-  /// Event `number` has come; `now` is the experiment after it. Events come in order.
-  virtual void OnEvent(int number, const std::shared_ptr<const Experiment>& now) = 0;
+  /// An event has come, whose number this is; `now` is the experiment after it, or null if another event takes effect
+  /// with it and comes next. Events come in order.
+  virtual void OnEvent(int number, const Event& event, const std::shared_ptr<const Experiment>& now) = 0;
 };
 
 }  // namespace mascot

@@ -49,9 +49,11 @@ BundleInbox::News BundleInbox::OnBundle(std::span<const std::uint8_t> bytes) {
   const auto tick = static_cast<std::int64_t>(bundle.tick());
   if (tick < tick_) return News::kOld;
   if (tick == tick_) return tick == answered_ ? News::kAgain : News::kWaits;
+  const auto events = static_cast<int>(HeadOf(states[0].data()).more);
   RequireMessages(tick, messages);
+  if (events <= known_events_) RequireAllMessages(tick, messages);
   tick_ = tick;
-  events_ = static_cast<int>(HeadOf(states[0].data()).more);
+  events_ = events;
   for (std::size_t k = 0; k < sources_.size(); ++k) GetState(states[k].data(), motions_[k]);
   for (const auto& body : messages) {
     const BodyHead head = HeadOf(body.data());
@@ -68,21 +70,36 @@ void BundleInbox::RequireMessages(std::int64_t tick, std::span<const std::span<c
     throw std::runtime_error(
         fmt::format("a bundle of tick {} with a message of agent {} at tick {}", tick, message.agent, message.tick));
   };
-  if (!realtime_ && messages.size() != (tick > 0 ? senders_.size() : 0))
-    throw std::runtime_error(fmt::format("a bundle of tick {} with {} messages, expected {}", tick, messages.size(),
-                                         tick > 0 ? senders_.size() : 0));
-  for (std::size_t k = 0; k < messages.size(); ++k) {
-    const BodyHead head = HeadOf(messages[k].data());
-    const bool fits = realtime_ ? std::ranges::find(senders_, static_cast<int>(head.agent)) != senders_.end() &&
-                                      std::cmp_less(head.tick, tick)
-                                : std::cmp_equal(head.agent, senders_[k]) && std::cmp_equal(head.tick, tick - 1);
-    if (!fits) refuse(head);
+  auto from = senders_.begin();  // in lockstep: of the next message
+  for (const auto& message : messages) {
+    const BodyHead head = HeadOf(message.data());
+    const auto sender = std::find(realtime_ ? senders_.begin() : from, senders_.end(), static_cast<int>(head.agent));
+    const bool in_time = realtime_ ? std::cmp_less(head.tick, tick) : std::cmp_equal(head.tick, tick - 1);
+    if (sender == senders_.end() || !in_time) refuse(head);
+    from = std::next(sender);
   }
 }
 
-bool BundleInbox::OnEvent(int number) {
+void BundleInbox::RequireMessageOf(int sender, std::int64_t tick, bool has_come) const {
+  if (!has_come && !realtime_ && tick > 0 && !silences_.Has(sender, tick - 1))
+    throw std::runtime_error(fmt::format("a bundle of tick {} without a message of agent {}", tick, sender));
+}
+
+void BundleInbox::RequireAllMessages(std::int64_t tick, std::span<const std::span<const std::uint8_t>> messages) const {
+  std::size_t next = 0;  // of the messages, which are in the order of the senders
+  for (const int sender : senders_) {
+    const bool has_come = next < messages.size() && std::cmp_equal(HeadOf(messages[next].data()).agent, sender);
+    next += has_come;
+    RequireMessageOf(sender, tick, has_come);
+  }
+}
+
+bool BundleInbox::OnEvent(int number, const Event& event) {
   known_events_ = number;
-  return IsComplete();
+  silences_.Take(event);
+  if (!IsComplete()) return false;
+  for (const int sender : senders_) RequireMessageOf(sender, tick_, messages_[index_.at(sender)].tick == tick_ - 1);
+  return true;
 }
 
 std::span<const Sample> BundleInbox::SamplesOf(int id) {

@@ -9,6 +9,7 @@
 #include "agent/link.h"
 #include "base/agent_range.h"
 #include "experiment/experiment.h"
+#include "experiment/silences.h"
 
 namespace mascot {
 
@@ -29,10 +30,11 @@ class BundleInbox {
     kWaits,     ///< for events
   };
   /// Takes the newest bundle. Throws std::runtime_error, and takes nothing, if it does not hold the states of the
-  /// sources, in order, and of one tick of the run, or lacks a message.
+  /// sources, in order, and of one tick of the run, or has a message that it should not have.
   News OnBundle(std::span<const std::uint8_t> bytes);
-  /// Event `number` has come. Returns whether the tick of the newest bundle can be answered now.
-  bool OnEvent(int number);
+  /// The next event, whose number this is. Returns whether the tick of the newest bundle can be answered now. Throws
+  /// std::runtime_error if the newest bundle lacks the message of an agent that was not lost; so does OnBundle().
+  bool OnEvent(int number, const Event& event);
 
   /// The tick of the newest bundle; -1: none.
   std::int64_t tick() const { return tick_; }
@@ -52,8 +54,12 @@ class BundleInbox {
   };
 
   bool IsComplete() const { return tick_ > answered_ && events_ <= known_events_; }
-  /// Throws std::runtime_error if these are not the messages of a bundle of `tick`: in lockstep one of each sender, in
-  /// the order of the sources, of the tick before; in real time those that have come, of earlier ticks.
+  /// Throws std::runtime_error if a bundle of `tick` lacks a message that it must have, as far as events are known.
+  void RequireAllMessages(std::int64_t tick, std::span<const std::span<const std::uint8_t>> messages) const;
+  /// The same of the message of one sender.
+  void RequireMessageOf(int sender, std::int64_t tick, bool has_come) const;
+  /// Throws std::runtime_error if these are not messages of a bundle of `tick`: in lockstep at most one of each sender,
+  /// in the order of the sources, of the tick before; in real time those that have come, of earlier ticks.
   void RequireMessages(std::int64_t tick, std::span<const std::span<const std::uint8_t>> messages) const;
 
   const AgentRange agents_;
@@ -68,6 +74,7 @@ class BundleInbox {
   std::vector<Sample> samples_;
   std::int64_t tick_ = -1, answered_ = -1;
   int events_ = 0, known_events_ = 0;
+  Silences silences_;
 };
 
 }  // namespace mascot

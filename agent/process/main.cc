@@ -45,7 +45,9 @@ class AgentRole : public mascot::Role {
  public:
   AgentRole(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message,
             mascot::AgentRange agents)
-      : agents_(agents), experiment_(ReadFor(agents, message)), node_(domain, lifecycle, experiment_, agents) {}
+      : agents_(agents),
+        experiment_(ReadFor(agents, message)),
+        node_(domain, lifecycle, experiment_, agents, message.events()) {}
 
   void Run() override {
     SayWhoIsHeard(experiment_, agents_);

@@ -1,5 +1,8 @@
 #include "agent/process/node.h"
 
+#include <csignal>
+#include <utility>
+
 #include "agent/laws/laws.h"
 #include "agent/process/agents_on_bundles.h"
 #include "agent/process/agents_on_topics.h"
@@ -20,16 +23,34 @@ std::unique_ptr<AgentsOnWire> MakeAgents(Domain& domain, Lifecycle& lifecycle, c
 
 }  // namespace
 
-Node::Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, AgentRange agents)
+Node::Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, AgentRange agents,
+           std::span<const mascot_msgs::msg::Event> history)
     : lifecycle_(lifecycle),
       experiment_(experiment),
+      ids_(agents),
       live_(experiment, &LawTable(), /*checked=*/true),
       agents_(MakeAgents(domain, lifecycle, experiment, agents)),
-      events_(domain, Topic::Event(), [this](const mascot_msgs::msg::Event& event) { OnEvent(event); }) {}
+      events_(domain, Topic::Event(), [this](const mascot_msgs::msg::Event& event) { OnEvent(event); }) {
+  for (const mascot_msgs::msg::Event& event : history) {
+    const Event taken = FromWire(event, experiment.size(), live_.count() + 1, experiment.ticks());
+    live_.Take(taken);
+    const bool is_last = std::cmp_equal(live_.count(), history.size());
+    agents_->OnEvent(live_.count(), taken, is_last ? live_.now() : nullptr);
+  }
+}
 
 void Node::OnEvent(const mascot_msgs::msg::Event& event) {
   const int number = live_.count() + 1;
-  agents_->OnEvent(number, live_.After(FromWire(event, experiment_.size(), number, experiment_.ticks())));
+  const Event taken = FromWire(event, experiment_.size(), number, experiment_.ticks());
+  const auto& now = live_.After(taken);
+  agents_->OnEvent(number, taken, now);
+  if (taken.fault && taken.fault->kind == FaultKind::kKill) DieIfKilled(*now);
+}
+
+void Node::DieIfKilled(const Experiment& now) const {
+  for (int id = ids_.first; id <= ids_.last; ++id)
+    if (const AgentFaults& faults = now.agent(id).faults; !faults.is_lost() || faults.hangs) return;
+  raise(SIGKILL);
 }
 
 void Node::Run() {

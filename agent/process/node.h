@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "agent/process/agents_on_wire.h"
 #include "bus/lifecycle.h"
@@ -12,7 +13,9 @@ namespace mascot {
 /// and on nothing else.
 class Node {
  public:
-  Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, AgentRange agents);
+  /// `history`: the events before the first tick that these agents answer.
+  Node(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment, AgentRange agents,
+       std::span<const mascot_msgs::msg::Event> history);
 
   /// Waits until every endpoint is matched, publishes READY, then answers ticks until Lifecycle::Wait() throws (Ended,
   /// or a failure).
@@ -21,9 +24,12 @@ class Node {
  private:
   bool Matched() const { return agents_->Matched() && events_.matched() >= 1; }
   void OnEvent(const mascot_msgs::msg::Event& event);
+  /// Ends this process at once, as from outside, if events have killed all of its agents.
+  void DieIfKilled(const Experiment& now) const;
 
   Lifecycle& lifecycle_;
   const Experiment& experiment_;
+  const AgentRange ids_;
   LiveExperiment live_;  // used by the reader of events alone
   std::unique_ptr<AgentsOnWire> agents_;
   Reader<EventType> events_;  // last, so destroyed first: it calls the members above

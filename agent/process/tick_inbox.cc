@@ -28,8 +28,9 @@ std::optional<TickInbox::CompleteTick> TickInbox::OnMessage(std::size_t source, 
   return TakeIfComplete();
 }
 
-std::optional<TickInbox::CompleteTick> TickInbox::OnEvent(int number) {
+std::optional<TickInbox::CompleteTick> TickInbox::OnEvent(int number, const Event& event) {
   events_ = number;
+  silences_.Take(event);
   return TakeIfComplete();
 }
 
@@ -45,7 +46,8 @@ bool TickInbox::IsComplete(const Source& source, std::int64_t tick) const {
   if (source.tick != tick) return false;
   if (!source.agent.sends_messages || tick == 0 || realtime_)
     return true;  // in real time a peer may have missed a tick
-  return source.messages[static_cast<std::size_t>((tick - 1) % 2)].tick == tick - 1;
+  return source.messages[static_cast<std::size_t>((tick - 1) % 2)].tick == tick - 1 ||
+         silences_.Has(source.agent.id, tick - 1);
 }
 
 Sample TickInbox::SampleAt(const Source& source, std::int64_t tick) {

@@ -8,14 +8,15 @@
 
 #include "agent/link.h"
 #include "base/motion.h"
+#include "experiment/silences.h"
 
 namespace mascot {
 
 /// Collects the samples that arrive for one agent, and tells which ticks it can answer. Tick k is complete when the
 /// agent's own state and those of its peers have arrived, all of tick k, the events up to it, and in lockstep also the
-/// messages that its peers sent with their answers to tick k-1. Each tick is complete once. In real time messages may
-/// be missing, and a tick that is overtaken by the next one never becomes complete: the server holds the agent's last
-/// command.
+/// messages that its peers, unless they were lost, sent with their answers to tick k-1. Each tick is complete once. In
+/// real time messages may be missing, and a tick that is overtaken by the next one never becomes complete: the server
+/// holds the agent's last command.
 ///
 /// No law, DDS, clock or lock: the caller passes in what arrives.
 class TickInbox {
@@ -41,8 +42,8 @@ class TickInbox {
   // itself, then its peers in order. A sample that is late, doubled or of a negative tick is ignored.
   std::optional<CompleteTick> OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events = 0);
   std::optional<CompleteTick> OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
-  /// Call it when all events up to `number` have arrived.
-  std::optional<CompleteTick> OnEvent(int number);
+  /// The next event, whose number this is.
+  std::optional<CompleteTick> OnEvent(int number, const Event& event);
 
  private:
   /// A message and the tick that its sender answered with it; -1 and empty: no message has arrived.
@@ -73,6 +74,7 @@ class TickInbox {
   std::vector<Sample> samples_;  // CompleteTick::samples
   std::int64_t answered_ = -1;   // the last tick that was complete
   int events_ = 0;               // number of the last event that has arrived
+  Silences silences_;
 };
 
 }  // namespace mascot

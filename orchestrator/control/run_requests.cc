@@ -177,7 +177,8 @@ void RunRequests::Adopt(const LiveExperiment& live, std::span<const Event> event
     } else if (!event.after_loss) {
       by_hand_.push_back(event);
       numbers_by_hand_.push_back(number);
-      if (!granted_.empty()) granted_.pop_front();
+      const bool is_granted = !granted_.empty() && granted_.front().Toml() == event.Toml();
+      if (is_granted) granted_.pop_front();  // else nobody has asked for it: an agent was lost for real
     }
   }
   live_.emplace(live);

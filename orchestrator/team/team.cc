@@ -22,6 +22,7 @@ void Team::Adopt(const std::shared_ptr<const Experiment>& now) {
     agents_[i]->Adopt(now);
     has_answered_[i] = !agents_[i]->is_lost();
   }
+  for (Part& part : parts_) part.low_level.Adopt(*now);
   takes_turns_ = AnyAsksCodeOfUser();
 }
 

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -94,6 +95,19 @@ Request GoToRequest(const SendArgs& /*args*/, const std::vector<std::string>& wo
                               ShortestFloat(y), ShortestFloat(z))};
 }
 
+Request FaultRequest(const SendArgs& /*args*/, const std::vector<std::string>& words) {
+  Value::Table fault{{"agent", {static_cast<std::int64_t>(NumberOf(words[0], "an agent's number"))}},
+                     {"kind", {words[1]}}};
+  for (const std::string& word : words | std::views::drop(2))
+    if (!fault.insert(Assignment(word)).second) Expected("each key once", word);
+  return {.kind = Request::Kind::kEvent, .toml = "fault = " + ToToml(Value{std::move(fault)})};
+}
+
+Request RestartRequest(const SendArgs& /*args*/, const std::vector<std::string>& words) {
+  return {.kind = Request::Kind::kEvent,
+          .toml = fmt::format("restart = {:.0f}", NumberOf(words[0], "an agent's number"))};
+}
+
 constexpr std::size_t kAny = 1000;
 constexpr Sentence kSentences[] = {
     {"pause", "", 0, 0, [](const auto&, const auto&) { return Request{.kind = Request::Kind::kPause}; }},
@@ -113,6 +127,8 @@ constexpr Sentence kSentences[] = {
     {"set", "KEY=VALUE...", 1, kAny, SetRequest},
     {"cut", "HEARER,HEARD...", 1, kAny, [](const auto&, const auto& words) { return EdgesRequest("cut", words); }},
     {"mend", "HEARER,HEARD...", 1, kAny, [](const auto&, const auto& words) { return EdgesRequest("mend", words); }},
+    {"fault", "AGENT KIND [KEY=VALUE...]", 2, kAny, FaultRequest},
+    {"restart", "AGENT", 1, 1, RestartRequest},
     {"event", "TOML", 1, 1,
      [](const auto&, const auto& words) { return Request{.kind = Request::Kind::kEvent, .toml = words[0]}; }},
 };

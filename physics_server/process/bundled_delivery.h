@@ -7,6 +7,7 @@
 
 #include "base/agent_range.h"
 #include "bus/bundle.h"
+#include "experiment/silences.h"
 #include "physics_server/process/delivery.h"
 
 namespace mascot {
@@ -19,7 +20,10 @@ class BundledDelivery final : public Delivery {
   BundledDelivery(Domain& domain, const Experiment& experiment, OnAnswers on_answers);
 
   bool Matched() const override;
+  bool Matched(AgentRange agents) const override;
   void Publish(const World& world, int events) override;
+  void Take(const Event& event) override;
+  bool Lose(int id) override;
   void AskAgain() override;
   void CompleteRow() override;
   void Finish() override;
@@ -31,13 +35,23 @@ class BundledDelivery final : public Delivery {
     std::vector<int> sources = {};  ///< ids: SourcesOf()
     std::vector<int> heard = {};    ///< of the sources, those that are heard there: their messages go with the states
     std::vector<Answer> answers = {};  ///< in the newest sample
+    std::int64_t answered = -1;        ///< the newest tick that the process has answered
+    std::vector<int> answering = {};   ///< scratch: ids
     BundleWriter bundle = {};          ///< of the newest tick
     std::unique_ptr<RawWriter> bundles = {};
   };
 
   void OnSample(Process& process, const RawReader::Bytes& bytes);
+  // The functions below are called with mutex_ held.
+  /// Takes what a process has answered to `tick`, into its answers and the next row. Throws std::runtime_error for
+  /// answers that it should not send.
+  void TakeAnswers(std::int64_t tick, const BundleReader::Section& commands,
+                   std::span<const std::span<const std::uint8_t>> messages, Process& process);
+  /// Whether any agent of a process answers this tick.
+  bool IsAnsweredBy(const Process& process, std::int64_t tick) const;
+  /// Whether all processes have answered the newest tick, but for those whose agents are lost.
+  bool IsAnswered() const;
   /// Writes a row for the recorder: these states, and what was answered since the last row.
-  /// Called with mutex_ held.
   void WriteRow(std::int64_t tick, const SampleBodies& states);
 
   const Experiment& experiment_;
@@ -51,7 +65,8 @@ class BundledDelivery final : public Delivery {
   SampleBodies commands_, messages_;  // as they came
   std::vector<SampleBodies> sent_;    // messages, by id - 1
   std::int64_t published_ = -1;       // the newest tick
-  std::size_t answered_ = 0;          // number of processes that have answered it
+  Silences silences_;
+  std::vector<char> is_lost_;  // by id - 1: its answers are not taken, also before the event that says so
   // By id - 1: the newest tick of which a command and a message were kept. An agent may answer twice.
   std::vector<std::int64_t> commanded_, said_;
 

@@ -28,8 +28,15 @@ class Delivery {
   virtual ~Delivery() = default;
   /// Whether all readers and writers are matched.
   virtual bool Matched() const = 0;
+  /// Whether those of the process of these agents are.
+  virtual bool Matched(AgentRange agents) const = 0;
   /// Publishes the states of the world's tick, of which `events` events have taken effect.
   virtual void Publish(const World& world, int events) = 0;
+  /// An event takes effect at the tick that is published next.
+  virtual void Take(const Event& event) = 0;
+  /// From now on no answers of agent `id` are taken, until an event restarts it. Returns whether its answer to the
+  /// newest tick is on its way to OnAnswers.
+  virtual bool Lose(int id) = 0;
   /// Sends the states of the newest tick again to processes that have not answered it, if nothing else sees to it that
   /// what was lost comes again.
   virtual void AskAgain() = 0;

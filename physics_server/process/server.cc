@@ -1,10 +1,12 @@
 #include "physics_server/process/server.h"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
 #include "experiment/processes.h"
+#include "physics_server/process/agents_text.h"
 
 namespace mascot {
 
@@ -12,6 +14,9 @@ using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
 namespace {
+
+/// How often fresh processes are asked whether they are ready.
+constexpr auto kAskFreshEvery = 50ms;
 
 TickProtocol::Rules RulesOf(const Experiment& experiment) {
   TickProtocol::Rules rules{.agents = experiment.size(),
@@ -65,7 +70,7 @@ void Server::Run() {
 void Server::Report() {
   const std::lock_guard lock(mutex_);
   delivery_->Finish();
-  lifecycle_.Report(static_cast<std::uint64_t>(std::max<std::int64_t>(ticks_.published(), 0)), pace_.Result(),
+  lifecycle_.Report(static_cast<std::uint64_t>(std::max<std::int64_t>(ticks_.last_whole(), 0)), pace_.Result(),
                     world_.contacts());
 }
 
@@ -115,6 +120,11 @@ void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string&
     Do(ticks_.OnRecorded(static_cast<std::int64_t>(status.tick())));
   } else if (const auto agents = AgentsOf(from)) {
     join_list_.OnAgents(*agents, ready);
+    const bool is_fresh = restart_ && std::cmp_equal(status.from_tick(), ticks_.published() + 1);
+    if (life == Life::kReady && is_fresh && std::ranges::find(restart_->ready, *agents) == restart_->ready.end()) {
+      restart_->ready.push_back(*agents);
+      lifecycle_.Wake();
+    }
   }
 }
 
@@ -130,30 +140,151 @@ void Server::Do(const TickProtocol::Actions& actions) {
 
 void Server::Publish() {
   PublishEvents();
+  LoseUnanswered();
   delivery_->Publish(world_, live_.count());
+  LookForRestarts();
+}
+
+void Server::LoseUnanswered() {
+  const std::int64_t next = world_.tick() + 1;
+  for (std::size_t k = next_event_; k < experiment_.events.size() && experiment_.events[k].tick == next; ++k) {
+    const auto& fault = experiment_.events[k].fault;
+    if (!fault || !fault->unanswered) continue;
+    delivery_->Lose(fault->agent);
+    if (ticks_.Lose(fault->agent, /*unanswered=*/true).wake) lifecycle_.Wake();
+  }
+}
+
+std::vector<int> Server::RestartsAhead() const {
+  const std::int64_t next = ticks_.published() + 1;
+  std::vector<int> agents;
+  const auto add = [&](const Event& event) {
+    if (event.restart) agents.push_back(*event.restart);
+  };
+  for (std::size_t k = next_event_; k < experiment_.events.size() && experiment_.events[k].tick == next; ++k)
+    add(experiment_.events[k]);
+  std::ranges::for_each(by_hand_, add);
+  std::ranges::for_each(live_.RestartsAt(next), add);
+  return agents;
+}
+
+void Server::LookForRestarts() {
+  const std::vector<int> agents = RestartsAhead();
+  if (agents.empty() || ticks_.published() >= experiment_.ticks()) return;
+  const auto restarts = [&](int id) { return std::ranges::find(agents, id) != agents.end(); };
+  for (const AgentRange& process : AgentProcesses(experiment_)) {
+    bool any = false, others_live = false;
+    for (int id = process.first; id <= process.last; ++id) {
+      any = any || restarts(id);
+      others_live = others_live || (!restarts(id) && !live_.current().agent(id).faults.is_lost());
+    }
+    if (!any || others_live) continue;  // the agent begins anew in the process of the others
+    if (!restart_) restart_.emplace();
+    if (std::ranges::find(restart_->processes, process) == restart_->processes.end())
+      restart_->processes.push_back(process);
+  }
+  if (!restart_) return;
+  ticks_.Hold();
+  progress_is_new_ = true;
+  lifecycle_.Wake();
+}
+
+void Server::AwaitRestarts() {
+  std::vector<AgentRange> ready;
+  bool asks = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!restart_) return;
+    if (WallClock::now() - restart_->since > std::chrono::duration<double>(experiment_.run.start_timeout_s)) {
+      std::vector<int> missing;
+      for (const AgentRange& process : restart_->processes)
+        if (std::ranges::find(restart_->ready, process) == restart_->ready.end()) missing.push_back(process.first);
+      throw std::runtime_error(
+          "tick " + std::to_string(ticks_.published() + 1) + ": fresh processes of " + AgentsText(missing) +
+          " were not ready within run.start_timeout_s = " + ShortestFloat(experiment_.run.start_timeout_s) + " s");
+    }
+    asks = WallClock::now() > restart_->ask_again && restart_->ready.size() < restart_->processes.size();
+    if (asks) restart_->ask_again = WallClock::now() + kAskFreshEvery;
+    if (restart_->ready.size() == restart_->processes.size()) ready = restart_->ready;
+  }
+  if (asks) {
+    AskForReports();  // what they said before we knew them is lost
+    ReportProgress();
+  }
+  if (ready.empty()) return;
+  for (const AgentRange& process : ready)  // without the mutex: it takes the locks of readers and writers
+    if (!events_.HasReaderOf(ProcessName(process)) || !delivery_->Matched(process)) return;
+  const std::lock_guard lock(mutex_);
+  if (restart_->processes.size() > ready.size()) return;
+  restart_.reset();
+  progress_is_new_ = true;
+  Do(ticks_.Release());
 }
 
 void Server::PublishEvents() {
-  const int before = live_.count();
+  std::vector<Event> events;
   while (next_event_ < experiment_.events.size() && experiment_.events[next_event_].tick == world_.tick())
-    PublishEvent(experiment_.events[next_event_++]);
-  for (const Event& event : std::exchange(by_hand_, {})) PublishEvent(event);
-  if (live_.count() > before) world_.Adopt(*live_.now());
+    events.push_back(experiment_.events[next_event_++]);
+  std::ranges::move(std::exchange(by_hand_, {}), std::back_inserter(events));
+  const int before = live_.count();
+  for (const Event& event : events) TakeEvent(event);
+  for (Event& event : live_.RestartsAt(world_.tick())) {
+    TakeEvent(event);
+    events.push_back(std::move(event));
+  }
+  if (events.empty()) return;
+  if (const std::string loss = LossThatEndsTheRun(live_.current()); !loss.empty())
+    throw std::runtime_error("tick " + std::to_string(world_.tick()) + ": " + loss);
+  for (std::size_t k = 0; k < events.size(); ++k) PublishEvent(events[k], before + 1 + static_cast<int>(k));
+  world_.Adopt(*live_.now());
 }
 
-void Server::PublishEvent(const Event& event) {
+void Server::TakeEvent(const Event& event) {
   live_.Take(event);
-  if (event.set.contains("run.pace")) {
-    ticks_.gate().SetPace(live_.now()->run.pace.value_or(0));
-    progress_is_new_ = true;
+  if (!event.set.contains("run.pace")) return;
+  ticks_.gate().SetPace(live_.now()->run.pace.value_or(0));
+  progress_is_new_ = true;
+  lifecycle_.Wake();
+}
+
+void Server::PublishEvent(const Event& event, int number) {
+  delivery_->Take(event);
+  if (event.fault && event.fault->IsLoss() && ticks_.Lose(event.fault->agent, /*unanswered=*/false).wake)
     lifecycle_.Wake();
-  }
+  if (event.restart) ticks_.Regain(*event.restart);
   mascot_msgs::msg::Event sample;
-  ToWire(event.tick, experiment_.control.rate_hz, live_.count(), event.Toml(), sample);
+  ToWire(event.tick, experiment_.control.rate_hz, number, event.Toml(), sample);
   events_.Write(sample);
 }
 
+void Server::Lose(std::span<const int> agents, FaultKind kind) {
+  const std::int64_t newest = ticks_.published();
+  for (const int id : agents) {
+    const auto is_it = [id](const Event& event) {
+      return event.fault && event.fault->IsLoss() && event.fault->agent == id;
+    };
+    const auto holds_it = [id](AgentRange process) { return process.Holds(id); };
+    if (restart_ && std::ranges::any_of(restart_->processes, holds_it)) continue;  // another one will be started
+    if (live_.current().agent(id).faults.is_lost() || std::ranges::any_of(by_hand_, is_it)) continue;
+    const bool has_answered = delivery_->Lose(id) || ticks_.answered(id) == newest;
+    const bool unanswered = !has_answered && experiment_.run.mode == Mode::kLockstep;
+    if (newest == experiment_.ticks()) {
+      if (has_answered) continue;
+      throw std::runtime_error("tick " + std::to_string(newest) + ", the last: agent " + std::to_string(id) +
+                               " is lost, and has not answered");
+    }
+    const Fault fault{.agent = id, .kind = kind, .unanswered = unanswered};
+    by_hand_.push_back({.tick = newest + 1, .fault = fault, .where = "agent " + std::to_string(id)});
+    if (!has_answered && ticks_.Lose(id, unanswered).wake) lifecycle_.Wake();
+  }
+}
+
 void Server::OnRequest(const mascot_msgs::msg::Request& request) {
+  if (static_cast<Ask>(request.kind()) == Ask::kLose) {
+    const std::vector<int> agents(request.agents().begin(), request.agents().end());
+    const std::lock_guard lock(mutex_);
+    return Lose(agents, FaultKind::kKill);
+  }
   if (request.number() == 0) return;  // for Lifecycle
   {
     const std::lock_guard lock(mutex_);
@@ -185,6 +316,7 @@ std::int64_t Server::CarryOut(const mascot_msgs::msg::Request& request) {
     case Ask::kEvent:
       if (static_cast<double>(next) >= request.value()) return kTooLate;
       by_hand_.push_back(EventFrom(next, request.toml(), experiment_.size(), "event by hand"));
+      LookForRestarts();
       break;
     default:
       throw std::runtime_error("an unknown kind of request: " + std::to_string(request.kind()));
@@ -200,6 +332,9 @@ void Server::ReportProgress() {
     progress.tick = ticks_.published();
     progress.paused = ticks_.gate().paused();
     progress.pace = ticks_.gate().pace();
+    progress.events = live_.count();
+    if (restart_)
+      for (const AgentRange& process : restart_->processes) progress.awaited.push_back(process.first);
   }
   lifecycle_.Report(progress);
 }
@@ -221,6 +356,7 @@ void Server::OnAnswers(std::span<const Delivery::Answer> answers) {
 void Server::RunTicks() {
   Start();
   for (;;) {
+    AwaitRestarts();
     const TickProtocol::Turn turn = Look();
     if (!turn.next_deadline) return;
     const bool is_long = turn.held && *turn.next_deadline - WallClock::now() > 100ms;
@@ -238,9 +374,12 @@ void Server::Start() {
 TickProtocol::Turn Server::Look() {
   const auto now = WallClock::now();
   const std::lock_guard lock(mutex_);
-  const TickProtocol::Turn turn = ticks_.Look(now, lifecycle_.stop_requested());
+  TickProtocol::Turn turn = ticks_.Look(now, lifecycle_.stop_requested());
   if (turn.due) MeasureCommands();
-  if (!turn.failure.empty()) throw std::runtime_error(turn.failure);
+  if (!turn.late.empty() && experiment_.run.on_agent_loss != OnAgentLoss::kAbort)
+    Lose(turn.late, FaultKind::kHang);
+  else if (!turn.failure.empty())
+    throw std::runtime_error(turn.failure);
   Do(turn.actions);
   if (turn.due) pace_.AddTick(std::chrono::duration<double>(WallClock::now() - *turn.due).count());
   return turn;
@@ -248,7 +387,8 @@ TickProtocol::Turn Server::Look() {
 
 void Server::MeasureCommands() {
   for (int id = 1; id <= experiment_.size(); ++id)
-    pace_.AddCommand(id, world_.tick(), world_.tick() - ticks_.answered(id));
+    if (!live_.current().agent(id).faults.is_lost())
+      pace_.AddCommand(id, world_.tick(), world_.tick() - ticks_.answered(id));
 }
 
 }  // namespace mascot

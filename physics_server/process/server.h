@@ -1,8 +1,10 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,13 +54,26 @@ class Server {
   // The functions below are called with mutex_ held.
   void Do(const TickProtocol::Actions& actions);
   void Publish();
+  /// Agents that do not answer the world's tick, as the file's events of the next one say, are not waited for.
+  void LoseUnanswered();
+  /// Holds the next tick if events of it restart agents whose processes must be fresh.
+  void LookForRestarts();
+  /// The agents that events restart at the next tick.
+  std::vector<int> RestartsAhead() const;
   /// Carries out a new request. Returns the first tick for which it holds, or why there is none (kOver, kTooLate).
   std::int64_t CarryOut(const mascot_msgs::msg::Request& request);
   /// Publishes the events that take effect at the world's tick: those of the file, then those by hand.
   void PublishEvents();
-  void PublishEvent(const Event& event);
+  void TakeEvent(const Event& event);
+  void PublishEvent(const Event& event, int number);
+  /// Agents are lost, for real: the event that says so comes at the next tick. Throws std::runtime_error at the last.
+  void Lose(std::span<const int> agents, FaultKind kind);
   /// Notes the age of the commands with which the world is stepped.
   void MeasureCommands();
+  // The one below takes mutex_ itself.
+  /// Lets the next tick happen if it was held for fresh processes, and all have joined. Throws std::runtime_error if
+  /// run.start_timeout_s is over.
+  void AwaitRestarts();
 
   Lifecycle& lifecycle_;
   const Experiment& experiment_;
@@ -70,6 +85,12 @@ class Server {
   LiveExperiment live_;
   std::size_t next_event_ = 0;  // in experiment_.events
   std::vector<Event> by_hand_;  // events of the next tick to be published
+  /// Fresh processes for which the next tick waits.
+  struct Restart {
+    std::vector<AgentRange> processes = {}, ready = {};
+    std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now(), ask_again = since;
+  };
+  std::optional<Restart> restart_;
   RunProgress progress_;
   std::atomic<bool> progress_is_new_ = true;  // others have not been told
   std::vector<Actuation> commands_;           // by id - 1: the commands with which the world is stepped

@@ -12,6 +12,8 @@ namespace {
 constexpr auto kLookEvery = std::chrono::milliseconds(50);
 /// The same while the gate holds a tick. It is also how often others learn that the run is held, not stuck.
 constexpr auto kLookWhileHeldEvery = std::chrono::milliseconds(500);
+/// The same while Hold() holds one, for processes that are about to be ready.
+constexpr auto kLookForProcessesEvery = std::chrono::milliseconds(25);
 /// Long beside most ticks, and short beside run.agent_timeout_s. After twice the time they are asked once more, and so
 /// on: laws may be slow.
 constexpr auto kAskAgainAfter = std::chrono::milliseconds(200);
@@ -38,21 +40,31 @@ TickProtocol::Actions TickProtocol::OnRecorded(std::int64_t rows) {
 
 TickProtocol::Actions TickProtocol::OnCommand(int id, std::int64_t tick, bool stop_requested) {
   std::int64_t& last = answered_[static_cast<std::size_t>(id - 1)];
-  if (finished_ || tick > published_ || tick <= last) return {};
+  if (finished_ || tick > published_ || tick <= last || barrier_.Excludes(id)) return {};
   last = tick;
   Actions actions;
-  if (barrier_.Answer(id, tick)) {
-    if (tick == rules_.last_tick || (stop_requested && !rules_.realtime))
-      actions.wake = finished_ = true;
-    else if (!rules_.realtime)
-      actions = Step();
-    else if (tick == 0)
-      actions.wake = paced_ = true;
-    else
-      actions.wake = gate_.paused();
-  }
+  if (barrier_.Answer(id, tick)) actions = EndOfAnswers(stop_requested);
   actions.take = true;
   return actions;
+}
+
+TickProtocol::Actions TickProtocol::EndOfAnswers(bool stop_requested) {
+  Actions actions;
+  if (published_ == rules_.last_tick || (stop_requested && !rules_.realtime))
+    actions.wake = finished_ = true;
+  else if (!rules_.realtime)
+    actions = Step();
+  else if (published_ == 0)
+    actions.wake = paced_ = true;
+  else
+    actions.wake = gate_.paused();
+  return actions;
+}
+
+TickProtocol::Actions TickProtocol::Lose(int id, bool unanswered) {
+  barrier_.Exclude(id);
+  if (unanswered) unanswered_ = published_;
+  return {.wake = barrier_.IsComplete()};  // Look() goes on
 }
 
 void TickProtocol::NotePublished() {
@@ -61,7 +73,7 @@ void TickProtocol::NotePublished() {
 }
 
 bool TickProtocol::Publish() {
-  if (!AwaitsPublication() || AwaitsRecorder() || !IsOpen()) return false;
+  if (!AwaitsPublication() || AwaitsRecorder() || held_ || !IsOpen()) return false;
   NotePublished();
   return true;
 }
@@ -71,10 +83,25 @@ TickProtocol::Actions TickProtocol::Step() {
   return {.step = true, .publish = Publish(), .wake = !IsOpen()};
 }
 
+TickProtocol::Actions TickProtocol::Release() {
+  held_ = false;
+  if (rules_.realtime) gate_.SetPace(gate_.pace());  // the time that has gone by does not count
+  return {.publish = running_ && !finished_ && Publish(), .wake = true};
+}
+
 TickProtocol::Turn TickProtocol::Look(Time now, bool stop_requested) {
   if (!running_ || finished_) return {};
+  if (held_ && AwaitsPublication()) {
+    finished_ = stop_requested;
+    return finished_ ? Turn{} : Turn{.next_deadline = now + kLookForProcessesEvery, .held = true};
+  }
   if (paced_) return LookAtClock(now, stop_requested);
-  return AwaitsPublication() && !AwaitsRecorder() ? LookAtGate(now, stop_requested) : Watch(now);
+  if (AwaitsPublication()) return AwaitsRecorder() ? Watch(now) : LookAtGate(now, stop_requested);
+  if (!barrier_.IsComplete()) return Watch(now);
+  // Those who had not answered are lost.
+  Turn turn{.actions = EndOfAnswers(stop_requested)};
+  if (!finished_) turn.next_deadline = now;
+  return turn;
 }
 
 TickProtocol::Turn TickProtocol::LookAtGate(Time now, bool stop_requested) {
@@ -109,7 +136,8 @@ TickProtocol::Turn TickProtocol::Watch(Time now) {
   const ProgressWatch::Seconds grace(AwaitsRecorder() ? (rules_.agents - 1) * rules_.agent_timeout_s : 0);
   const std::int64_t progress = tick_ + published_;  // agents have their time from a tick's publication
   const bool overdue = watch_.IsOverdue(progress, now, grace);
-  return {.actions = {.ask = AsksAgain(now)}, .next_deadline = now + kLookEvery, .failure = overdue ? WhoIsLate() : ""};
+  Turn turn{.actions = {.ask = AsksAgain(now)}, .next_deadline = now + kLookEvery};
+  return overdue ? WithFailure(std::move(turn)) : turn;
 }
 
 bool TickProtocol::AsksAgain(Time now) {
@@ -125,7 +153,8 @@ bool TickProtocol::AsksAgain(Time now) {
 }
 
 TickProtocol::Turn TickProtocol::EndTick(Time due, Time now, bool stop_requested) {
-  if (const auto silent = HeldTooLong(); !silent.empty()) return {.due = due, .failure = NoCommandFrom(silent)};
+  if (const auto silent = HeldTooLong(); !silent.empty())
+    return {.next_deadline = now, .failure = NoCommandFrom(silent), .late = silent};
   gate_.OnTick(now);
   Turn turn{.actions = Step(), .due = due};
   paced_ = tick_ < rules_.last_tick;
@@ -138,7 +167,8 @@ std::vector<int> TickProtocol::HeldTooLong() const {
   const double period_s = rules_.period_s / gate_.pace();  // of the wall clock
   std::vector<int> ids;
   for (int id = 1; id <= rules_.agents; ++id)
-    if (static_cast<double>(published_ - answered(id)) * period_s > rules_.agent_timeout_s) ids.push_back(id);
+    if (!barrier_.Excludes(id) && static_cast<double>(published_ - answered(id)) * period_s > rules_.agent_timeout_s)
+      ids.push_back(id);
   return ids;
 }
 
@@ -147,11 +177,16 @@ std::string TickProtocol::NoCommandFrom(const std::vector<int>& agents) const {
          " within run.agent_timeout_s = " + ShortestFloat(rules_.agent_timeout_s) + " s";
 }
 
-std::string TickProtocol::WhoIsLate() const {
-  if (!AwaitsRecorder()) return NoCommandFrom(barrier_.Late());
-  return "tick " + std::to_string(tick_) + ": the recorder has confirmed only " + std::to_string(recorded_rows_) +
-         " ticks, nothing within " + std::to_string(rules_.agents) +
-         " times run.agent_timeout_s = " + ShortestFloat(rules_.agent_timeout_s) + " s";
+TickProtocol::Turn TickProtocol::WithFailure(Turn turn) const {
+  if (AwaitsRecorder()) {
+    turn.failure = "tick " + std::to_string(tick_) + ": the recorder has confirmed only " +
+                   std::to_string(recorded_rows_) + " ticks, nothing within " + std::to_string(rules_.agents) +
+                   " times run.agent_timeout_s = " + ShortestFloat(rules_.agent_timeout_s) + " s";
+  } else {
+    turn.late = barrier_.Late();
+    turn.failure = NoCommandFrom(turn.late);
+  }
+  return turn;
 }
 
 }  // namespace mascot

@@ -49,8 +49,9 @@ class TickProtocol {
     Actions actions = {};
     std::optional<Time> due = {};            ///< set if a tick ends in real time: when the next one was due
     std::optional<Time> next_deadline = {};  ///< when to call Look() at the latest; nullopt: the run is over
-    bool held = false;                       ///< nothing but the gate keeps the next tick from happening
+    bool held = false;                       ///< nothing but the gate, or Hold(), keeps the next tick from happening
     std::string failure = {};                ///< why the run has failed; empty: it has not
+    std::vector<int> late = {};              ///< with a failure: the agents that it is due to; none: it is the recorder
   };
 
   explicit TickProtocol(const Rules& rules);
@@ -62,6 +63,15 @@ class TickProtocol {
   /// Call it when agent `id` (1..N) has answered `tick`. The command counts only if `tick` is published and later than
   /// the agent's last answer.
   Actions OnCommand(int id, std::int64_t tick, bool stop_requested);
+  /// Call it when agent `id` is lost: it is not waited for any more, and its commands do not count. `unanswered`: the
+  /// event that says so comes at the next tick.
+  Actions Lose(int id, bool unanswered);
+  /// Call it when a fresh agent has taken the place of agent `id`, before the first tick that it answers is published
+  /// or right after.
+  void Regain(int id) { barrier_.Include(id); }
+  /// From now on the world's next tick is not published, until Release().
+  void Hold() { held_ = true; }
+  Actions Release();
   /// The loop calls it after Start(), when the gate has changed, and when Turn::next_deadline says so: it lets ticks
   /// happen that are due, and fails if an agent or the recorder is late.
   Turn Look(Time now, bool stop_requested);
@@ -73,6 +83,9 @@ class TickProtocol {
   bool finished() const { return finished_; }
   /// The newest tick published; -1: none.
   std::int64_t published() const { return published_; }
+  /// The newest tick of which all is known: the last one, without that of which only an event of the next tick would
+  /// have said who has not answered.
+  std::int64_t last_whole() const { return published_ - (unanswered_ == published_ ? 1 : 0); }
   /// The tick that agent `id`'s current command answered; -1: the agent has given none.
   std::int64_t answered(int id) const { return answered_[static_cast<std::size_t>(id - 1)]; }
 
@@ -87,6 +100,8 @@ class TickProtocol {
   /// Notes that the world's tick is published, and returns true, if it is not published yet and neither the recorder
   /// nor the gate prevents it.
   bool Publish();
+  /// All agents that are waited for have answered the newest tick.
+  Actions EndOfAnswers(bool stop_requested);
   /// Moves on to the next tick.
   Actions Step();
   /// Look() at a tick that waits for all commands, or for the recorder: fails if nothing has moved for too long.
@@ -103,16 +118,18 @@ class TickProtocol {
   std::vector<int> HeldTooLong() const;
   /// "tick 12: no command from agents 2, 5 within run.agent_timeout_s = 5.0 s".
   std::string NoCommandFrom(const std::vector<int>& agents) const;
-  /// The message about the agents that have not answered this tick, or about the recorder, if that is late.
-  std::string WhoIsLate() const;
+  /// `turn` with the failure that agents have not answered this tick, or that the recorder is late.
+  Turn WithFailure(Turn turn) const;
 
   const Rules rules_;
   bool running_ = false;
   bool timed_ = false;  // real time: the gate has been asked when a tick is due
   bool paced_ = false;  // real time: from the first tick's answers to the last tick, the gate ends ticks
   bool finished_ = false;
+  bool held_ = false;
   std::int64_t tick_ = 0;  // the world's tick
   std::int64_t published_ = -1;
+  std::int64_t unanswered_ = -2;  // the newest tick that a lost agent has left unanswered
   std::int64_t recorded_rows_ = 0;
   TickBarrier barrier_;                 // waits for the newest tick published
   std::vector<std::int64_t> answered_;  // by id - 1: the last tick answered

@@ -30,6 +30,15 @@ bool TopicDelivery::Matched() const {
   return true;
 }
 
+bool TopicDelivery::Matched(AgentRange agents) const {
+  const std::string process = ProcessName(agents);
+  for (const int id : SourcesOf(experiment_, agents))
+    if (!states_[static_cast<std::size_t>(id - 1)]->HasReaderOf(process)) return false;
+  for (int id = agents.first; id <= agents.last; ++id)
+    if (command_readers_[static_cast<std::size_t>(id - 1)]->matched() < 1) return false;
+  return true;
+}
+
 void TopicDelivery::Publish(const World& world, int events) {
   const int rate_hz = experiment_.control.rate_hz;
   rosgraph_msgs::msg::Clock clock;

@@ -15,7 +15,10 @@ class TopicDelivery final : public Delivery {
   TopicDelivery(Domain& domain, const Experiment& experiment, const OnAnswers& on_answers);
 
   bool Matched() const override;
+  bool Matched(AgentRange agents) const override;
   void Publish(const World& world, int events) override;
+  void Take(const Event& /*event*/) override {}
+  bool Lose(int /*id*/) override { return false; }  // the server does not wait for it
   void AskAgain() override {}
   void CompleteRow() override {}
   void Finish() override {}

@@ -164,5 +164,19 @@ TEST(Peers, AnAgentStartedByHandBelievesTheFirstThatGivesItAnExperiment) {
   EXPECT_EQ(peers.Believe(Topic::Request(), ParticipantOf(1, 50)), "orchestrator");
 }
 
+TEST_F(PeersTest, AFreshProcessTakesThePlaceOfTheOneBeforeIt) {
+  const auto old = ParticipantOf(1, 101), fresh = ParticipantOf(1, 201);
+  ASSERT_EQ(peers_.Claim(old, "agent_1"), "agent_1");
+  const auto before = peers_.version();
+  peers_.Know("agent_1", ProcessKey::WithPid(101));
+  EXPECT_EQ(peers_.version(), before) << "it is the same process";
+  peers_.Know("agent_1", ProcessKey::WithPid(201));
+  EXPECT_GT(peers_.version(), before) << "others must be told";
+  EXPECT_EQ(peers_.ProcessOf(old), "");
+  EXPECT_EQ(peers_.WriterOf(Topic::Command(1), old), "");
+  EXPECT_EQ(peers_.Claim(fresh, "agent_1"), "agent_1");
+  EXPECT_EQ(peers_.WriterOf(Topic::Command(1), fresh), "agent_1");
+}
+
 }  // namespace
 }  // namespace mascot

@@ -120,7 +120,8 @@ inline pid_t ChildOf(pid_t parent, const std::string& words) {
   const std::string pid = std::to_string(parent);
   std::ifstream children("/proc/" + pid + "/task/" + pid + "/children");
   for (pid_t child; children >> child;) {
-    std::string command = ReadFile("/proc/" + std::to_string(child) + "/cmdline");
+    std::string command;
+    std::getline(std::ifstream("/proc/" + std::to_string(child) + "/cmdline"), command);  // nothing, if it has ended
     for (char& c : command)
       if (c == '\0') c = ' ';
     if (command.find(words) != std::string::npos) return child;

@@ -1,5 +1,6 @@
 #include "orchestrator/engines/dds/engine.h"
 
+#include <fmt/format.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -56,6 +58,8 @@ constexpr auto kExitGrace = 5s, kLastWords = 60s;
 constexpr int kOwnDescriptors = 120, kDescriptorsPerProcess = 3;
 /// How long the DDS library may take for a call at the end of a run.
 constexpr auto kLibraryGrace = 5s;
+/// How often a process is started afresh at one tick before the run fails.
+constexpr int kMaxStarts = 10;
 /// A host is lost before its agents are: within this part of run.agent_timeout_s. A host is more patient with us.
 constexpr double kShareOfTimeout = 0.6, kMinSilence_s = 2, kHostPatience_s = 10;
 
@@ -100,6 +104,11 @@ class DdsRun {
   bool HearHosts();
   void AwaitChildren();
   void CheckWire();
+  void TellLosses();
+  void TellLossBy(const Event& event);
+  std::string WhatFollows() const;
+  void StartAfresh();
+  void StartAfresh(AgentRange agents, std::int64_t tick);
   void Remind();
   WallClock::duration BetweenReminders() const;
   void Steer();
@@ -123,6 +132,19 @@ class DdsRun {
   RosSource* const ros_;
   const WallClock::time_point launched_ = WallClock::now();
   WallClock::time_point next_reminder_ = launched_ + BetweenReminders();
+  std::vector<std::pair<AgentRange, std::string>> losses_;     // of which no event tells yet: agents, and what happened
+  std::size_t seen_events_ = 0;                                // of those that the recorder has
+  std::set<int> lost_by_file_;                                 // agents that an event of the file has lost
+  std::map<std::string, std::vector<std::string>> arguments_;  // of the processes of agents on this host
+  int next_number_ = kFirstAgents;  // DomainOptions::number of the next process that starts afresh
+  bool number_is_used_ = false;     // all numbers have been
+  /// A process that was started afresh.
+  struct Start {
+    std::int64_t tick = -1;
+    int times = 0;  ///< at this tick
+    bool runs = false;
+  };
+  std::map<AgentRange, Start> started_;         // the newest
   std::map<std::string, std::string> by_hand_;  // processes that are started by hand: what to type
   const bool external_;                         // some agents are started by hand
   const bool reaches_others_;                   // agents may be on other hosts
@@ -184,10 +206,21 @@ RunPhases::Rules DdsRun::Rules() {
           .period_s = run.mode == Mode::kRealtime ? experiment_.period_s() / run.speed : 0,
           .violation = [this] { return audit_.Violation(); },
           .missing = [this] { return links_->Missing(); },
+          .is_loss =
+              [this](const std::string& process) {
+                return experiment_.run.on_agent_loss != OnAgentLoss::kAbort && AgentsOf(process).has_value();
+              },
           .last_lines = [this](const std::string& process) { return logs_.LastLines(process); }};
 }
 
 void DdsRun::Join() {
+  const bool restarts =
+      experiment_.run.on_agent_loss == OnAgentLoss::kRestart ||
+      std::ranges::any_of(experiment_.events, [](const Event& event) { return event.restart.has_value(); });
+  if (restarts && !experiment_.network.is_bundled())
+    throw std::runtime_error(
+        "network.delivery: expected \"bundled\" or \"auto\" in a run over DDS in which agents start "
+        "afresh, got \"topics\"");
   lock_.emplace(experiment_.network.domain);
   if (run_requests_ != nullptr) run_requests_->SetDomain(lock_->domain());
   LookAtPorts();
@@ -340,6 +373,8 @@ void DdsRun::Spawn() {
                         (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : "");
     console_.Line("waiting for: " + by_hand_[process]);
   }
+  for (const Children::CopyOf& copy : here) arguments_[copy.process] = copy.arguments;
+  next_number_ = kFirstAgents + static_cast<int>(here.size());
   const std::vector<pid_t> ids =
       children_.SpawnCopies(ProgramFolder() / "agent", here, {experiment_.run.start_timeout_s, [this] {
                                                                 OnSignal(stop_.Within(0ms));
@@ -400,6 +435,8 @@ void DdsRun::Loop() {
     Reap();
     links_->HandOutExperiment();
     CheckWire();
+    TellLosses();
+    StartAfresh();
     Remind();
     const RunPhases::View view = Record();
     Do(phases_.Look(view, WallClock::now()));
@@ -464,6 +501,108 @@ void DdsRun::Reap() {
 bool DdsRun::HearHosts() try { return launcher_->Pump(); } catch (const std::exception& failure) {
   phases_.Fail(InWords(failure));
   return false;
+}
+
+/// What becomes of an agent that is lost, in words.
+std::string DdsRun::WhatFollows() const {
+  const auto& run = experiment_.run;
+  const std::string key = "run.on_agent_loss = \"" + std::string(kOnAgentLoss.Name(run.on_agent_loss)) + "\": ";
+  switch (run.on_agent_loss) {
+    case OnAgentLoss::kHold:
+      return key + "the actuators keep their last values";
+    case OnAgentLoss::kDrop:
+      return key + "the actuators go to zero";
+    default:
+      return key + "a fresh process takes its place after " + ShortestFloat(run.restart_after_s) + " s";
+  }
+}
+
+/// Tells of an agent that hangs, as the physics server has noticed.
+void DdsRun::TellLossBy(const Event& event) {
+  if (!event.fault || !event.fault->IsLoss()) return;
+  const bool is_of_file = std::ranges::any_of(
+      experiment_.events, [&](const Event& other) { return other.tick == event.tick && other.Toml() == event.Toml(); });
+  const int agent = event.fault->agent;
+  lost_by_file_.erase(agent);
+  if (is_of_file) lost_by_file_.insert(agent);
+  if (event.fault->kind == FaultKind::kHang && !is_of_file)
+    console_.Line(fmt::format("lost: agent {} hangs: no command within run.agent_timeout_s = {} s\n{}", agent,
+                              ShortestFloat(experiment_.run.agent_timeout_s), WhatFollows()));
+}
+
+/// Tells the physics server which agents have been lost, until an event says so.
+void DdsRun::TellLosses() {
+  for (const auto& [process, story] : phases_.TakeLosses()) {
+    const AgentRange agents = *AgentsOf(process);
+    started_[agents].runs = false;                                    // if it is awaited, another one has to be started
+    if (recorder_->AreLost(agents)) continue;                         // by an event, which has ended the process
+    if (!experiment_.network.is_bundled()) recorder_->Doubt(agents);  // else the server says what has been answered
+    losses_.push_back({agents, story});
+  }
+  for (const mascot_msgs::msg::Event& sample : recorder_->Events(seen_events_)) {
+    ++seen_events_;
+    TellLossBy(FromWire(sample, experiment_.size()));
+  }
+  std::erase_if(losses_, [this](const auto& loss) {
+    if (!recorder_->AreLost(loss.first)) return false;
+    if (!lost_by_file_.contains(loss.first.last)) console_.Line("lost: " + loss.second + "\n" + WhatFollows());
+    return true;
+  });
+  for (const auto& [agents, story] : losses_) links_->Lose(agents);
+}
+
+/// Starts the processes that the physics server awaits, once all events are known before the tick that they will
+/// answer. What the processes before them have sent has arrived: the server awaits them when all have answered.
+void DdsRun::StartAfresh() {
+  const auto server = links_->StatusOf(kPhysicsServer);
+  if (!server || server->awaited().empty()) return;
+  const auto tick = static_cast<std::int64_t>(server->tick()) + 1;
+  const auto is_started = [&](AgentRange agents) {
+    const Start& start = started_[agents];
+    return start.tick == tick && start.runs;
+  };
+  std::vector<AgentRange> awaited;
+  for (const std::uint32_t first : server->awaited()) {
+    const auto process = std::ranges::find(processes_, static_cast<int>(first), &AgentRange::first);
+    if (process != processes_.end() && !is_started(*process)) awaited.push_back(*process);
+  }
+  if (awaited.empty()) return;
+  std::vector<mascot_msgs::msg::Event> events = recorder_->Events();
+  if (std::cmp_less(events.size(), server->events())) return;
+  for (const AgentRange& agents : awaited) {
+    children_.Kill(ProcessName(agents));
+    audit_.OnEnd(ProcessName(agents));
+  }
+  links_->HandOutExperiment(tick, std::move(events));
+  for (const AgentRange& agents : awaited) StartAfresh(agents, tick);
+}
+
+void DdsRun::StartAfresh(AgentRange agents, std::int64_t tick) {
+  const std::string process = ProcessName(agents);
+  const auto known = arguments_.find(process);
+  if (known == arguments_.end())
+    throw std::runtime_error(fmt::format("{} cannot start afresh: this host has not started it", PlacedName(process)));
+  Start& start = started_[agents];
+  if (start.tick == tick && start.times == kMaxStarts)
+    throw std::runtime_error(
+        fmt::format("{} was started afresh {} times at {} s, and has ended each time before it was "
+                    "ready",
+                    process, kMaxStarts, ShortestFloat(experiment_.time_s(tick))));
+  start = {.tick = tick, .times = start.tick == tick ? start.times + 1 : 1, .runs = true};
+  std::erase_if(losses_, [agents](const auto& loss) { return loss.first == agents; });
+  std::vector<std::string> arguments = known->second;
+  // Not the number of a process before it: others still write into the memory behind the ports of that. When all
+  // numbers are used up, the process takes ports without memory.
+  *std::next(std::ranges::find(arguments, "--participant")) = std::to_string(next_number_);
+  if (number_is_used_ && experiment_.network.transport == "auto")
+    *std::next(std::ranges::find(arguments, "--transport")) = "udp";
+  number_is_used_ = number_is_used_ || next_number_ + 1 == kOwnNumber;
+  next_number_ = next_number_ + 1 < kOwnNumber ? next_number_ + 1 : kFirstAgents;
+  arguments.insert(arguments.end(), {"--from-tick", std::to_string(tick)});
+  const pid_t pid = children_.Spawn(process, ProgramFolder() / "agent", arguments,
+                                    folder_.Log(process + "_from_tick_" + std::to_string(tick)));
+  peers_.Know(process, ProcessKey::WithPid(pid));
+  console_.Line(fmt::format("{} starts afresh at {} s", process, ShortestFloat(experiment_.time_s(tick))));
 }
 
 void DdsRun::CheckWire() {

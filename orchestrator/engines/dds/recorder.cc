@@ -44,6 +44,10 @@ RowWindow::Rules WindowRules(const Experiment& experiment) {
                          .ticks = kHistoryDepth,
                          .patience = kPatience,
                          .batch = kBatch};
+  // What is sent in bundles has gone through the server, which leaves out what an event leaves unanswered.
+  rules.doubts = !experiment.network.is_bundled() && std::ranges::any_of(experiment.events, [](const Event& event) {
+    return event.fault && event.fault->unanswered;
+  });
   for (const AgentConfig& agent : experiment.agents) {
     rules.topics.push_back(Topic::State(agent.id));
     rules.topics.push_back(Topic::Command(agent.id));
@@ -166,9 +170,33 @@ void Recorder::OnRow(const RawReader::Bytes& bytes, std::int64_t sequence) {
 }
 
 void Recorder::OnEvent(const RawReader::Bytes& bytes, std::int64_t sequence) {
-  const std::int64_t tick = CheckedTick(Topic::Event(), 0, ReadAt<std::uint64_t>(bytes, kTick), experiment_.ticks());
+  CheckedTick(Topic::Event(), 0, ReadAt<std::uint64_t>(bytes, kTick), experiment_.ticks());
+  mascot_msgs::msg::Event sample;
+  Deserialize(bytes, sample);
+  const Event event = FromWire(sample, experiment_.size());
   const std::lock_guard lock(mutex_);
-  if (window_.TakeEvent(tick, bytes, sequence)) domain_.Wake();
+  const bool wake = window_.TakeEvent(event, bytes, sequence);
+  events_.push_back(std::move(sample));
+  if (wake) domain_.Wake();
+}
+
+std::vector<mascot_msgs::msg::Event> Recorder::Events(std::size_t skip) const {
+  const std::lock_guard lock(mutex_);
+  if (skip >= events_.size()) return {};
+  return {events_.begin() + static_cast<std::ptrdiff_t>(skip), events_.end()};
+}
+
+void Recorder::Doubt(AgentRange agents) {
+  const std::lock_guard lock(mutex_);
+  for (int id = agents.first; id <= agents.last; ++id)
+    if (!window_.IsLost(id)) window_.Doubt(id);
+}
+
+bool Recorder::AreLost(AgentRange agents) const {
+  const std::lock_guard lock(mutex_);
+  for (int id = agents.first; id <= agents.last; ++id)
+    if (!window_.IsLost(id)) return false;
+  return true;
 }
 
 std::int64_t Recorder::Drain(bool give_up) {

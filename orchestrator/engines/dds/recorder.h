@@ -25,6 +25,12 @@ class Recorder {
   /// with `give_up`, that lack commands. Returns the number of rows fed since the start. Returns after 50 ms even if
   /// rows are left, and then wakes the loop to call it again. Throws what the feed throws.
   std::int64_t Drain(bool give_up = false);
+  /// The events so far, in order, without the first `skip`.
+  std::vector<mascot_msgs::msg::Event> Events(std::size_t skip = 0) const;
+  /// Agents may be lost: from now on rows wait until it is clear what they have answered (RowWindow::Doubt()).
+  void Doubt(AgentRange agents);
+  /// Whether all of these agents are lost, as the events so far say.
+  bool AreLost(AgentRange agents) const;
   /// Number of samples that are known to be missing, or that came too late for their row.
   std::uint64_t lost() const;
   /// Wall-clock time from the first sample to the newest command (s).
@@ -53,8 +59,9 @@ class Recorder {
   Domain& domain_;
   const Experiment& experiment_;
   RowFeed& feed_;
-  mutable std::mutex mutex_;  // guards window_, started_ and last_command_
+  mutable std::mutex mutex_;  // guards window_, events_, started_ and last_command_
   RowWindow window_;
+  std::vector<mascot_msgs::msg::Event> events_;
   Time started_{}, last_command_{};
   std::int64_t newest_row_ = 0;                            // sequence number of the newest sample of /row
   RawReader::Bytes sample_;                                // one of a row, with its encapsulation

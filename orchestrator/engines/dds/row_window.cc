@@ -55,24 +55,54 @@ bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::
   slot.events = std::max(slot.events, events);
   if (topic.kind == TopicKind::kState || topic.kind == TopicKind::kClock) ++slot.states;
   newest_ = std::max(newest_, tick);
-  if (slot.samples == rules_.topics.size()) ++complete_;
+  if (slot.samples + silent_ == rules_.topics.size()) ++complete_;
   return complete_ >= rules_.batch || tick == rules_.last_tick || newest_ - rows_ == rules_.patience;
 }
 
-bool RowWindow::TakeEvent(std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence) {
-  if (sequence != newest_event_ + 1 || tick < rows_)
+bool RowWindow::TakeEvent(const Event& event, std::span<const std::uint8_t> bytes, std::int64_t sequence) {
+  if (sequence != newest_event_ + 1 || event.tick < rows_)
     throw std::runtime_error(fmt::format("the recording is not complete: {}: event {} came after event {}, at tick {}",
                                          Topic::Event().Name(), sequence, newest_event_, rows_));
+  if (event.fault && event.fault->unanswered && event.tick <= rows_)
+    throw std::runtime_error(
+        fmt::format("the recording is not complete: it has a command of agent {} at tick {}, which "
+                    "has not reached the physics server",
+                    event.fault->agent, event.tick - 1));
   newest_event_ = sequence;
-  Slot& slot = SlotOf(tick);
-  if (slot.tick != tick) Begin(slot, tick);
+  silences_.Take(event);
+  if (event.fault && event.fault->IsLoss()) doubted_.erase(event.fault->agent);
+  silent_ = silences_.empty() ? 0
+                              : static_cast<std::size_t>(std::ranges::count_if(
+                                    rules_.topics, [&](const Topic& topic) { return IsSilent(topic, event.tick); }));
+  Slot& slot = SlotOf(event.tick);
+  if (slot.tick != event.tick) Begin(slot, event.tick);
   slot.row.events.emplace_back(bytes.begin(), bytes.end());
   return true;
 }
 
-bool RowWindow::IsReady(const Slot& slot, bool give_up) const {
+bool RowWindow::IsSilent(const Topic& topic, std::int64_t tick) const {
+  return topic.traits().rhythm == TopicRhythm::kAnswer && silences_.Has(topic.agent, tick);
+}
+
+bool RowWindow::HasStates(const Slot& slot, std::int64_t events_before) const {
+  return slot.states == rules_.agents + 1 && slot.events <= events_before + std::ssize(slot.row.events);
+}
+
+bool RowWindow::IsWhole(const Slot& slot) const {
+  if (silences_.empty()) return slot.samples == rules_.topics.size();
+  return slot.states == rules_.agents + 1 && std::ranges::all_of(rules_.topics, [&](const Topic& topic) {
+           return topic.traits().rhythm != TopicRhythm::kAnswer || IsSilent(topic, slot.tick) ||
+                  !SampleOf(slot.row, topic).empty();
+         });
+}
+
+bool RowWindow::IsReady(const Slot& slot, bool give_up) {
   if (slot.tick != rows_ || slot.events > events_ + std::ssize(slot.row.events)) return false;
-  if (slot.samples == rules_.topics.size()) return true;
+  if ((rules_.doubts || !doubted_.empty()) && !give_up && slot.tick < rules_.last_tick) {
+    const Slot& next = SlotOf(slot.tick + 1);
+    if (next.tick != slot.tick + 1 || !HasStates(next, events_ + std::ssize(slot.row.events))) return false;
+  }
+  if (IsWhole(slot)) return true;
   const bool states_complete = slot.states == rules_.agents + 1;
   return rules_.realtime && states_complete && (give_up || newest_ - slot.tick >= rules_.patience);
 }
@@ -81,6 +111,9 @@ bool RowWindow::Next(bool give_up, Row& row) {
   complete_ = 0;
   Slot& slot = SlotOf(rows_);
   if (!IsReady(slot, give_up)) return false;
+  if (!silences_.empty())  // what came too late, and was not taken by the server
+    for (const Topic& topic : rules_.topics)
+      if (IsSilent(topic, slot.tick)) SampleOf(slot.row, topic).clear();
   row.tick = slot.tick;
   std::swap(row.clock, slot.row.clock);
   std::swap(row.states, slot.row.states);

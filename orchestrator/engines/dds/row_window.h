@@ -2,16 +2,19 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <span>
 #include <vector>
 
+#include "experiment/silences.h"
 #include "idl/topics.h"
 #include "orchestrator/team/row.h"
 
 namespace mascot {
 
 /// Assembles rows from the samples of all per-tick topics. Samples come in order on each topic, in any order between
-/// topics. The sequence numbers of each writer prove that no sample is lost (CheckSequence).
+/// topics. The sequence numbers of each writer prove that no sample is lost (CheckSequence). Agents that are lost, as
+/// events say, send nothing.
 ///
 /// Without DDS, clock or lock: Recorder passes in the samples and takes the rows.
 class RowWindow {
@@ -25,6 +28,7 @@ class RowWindow {
     /// In real time: a row that lacks only commands or messages is ready when the newest tick is this far ahead.
     std::int64_t patience = 0;
     std::int64_t batch = 0;  ///< number of complete rows at which the writing thread is woken
+    bool doubts = false;     ///< any agent may be lost at any tick, as after Doubt()
   };
   explicit RowWindow(Rules rules);
 
@@ -38,8 +42,14 @@ class RowWindow {
   /// std::runtime_error if its tick is too far ahead. For a state, `events` is the number of events that have taken
   /// effect up to its tick; the row of that tick is complete only with these events.
   bool Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t events = 0);
-  /// Takes event number `sequence`, which takes effect at `tick`. Returns and throws as Take() does.
-  bool TakeEvent(std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t sequence);
+  /// Takes event number `sequence`. Returns and throws as Take() does; throws also if it says that an agent has not
+  /// answered a tick whose row, with its answer, was taken.
+  bool TakeEvent(const Event& event, std::span<const std::uint8_t> bytes, std::int64_t sequence);
+  /// An agent may be lost: until an event says so, the row of a tick is taken only with the states of the next one,
+  /// which come after that event.
+  void Doubt(int agent) { doubted_.insert(agent); }
+  /// Whether an agent is lost for the time being, as the events so far say.
+  bool IsLost(int agent) const { return silences_.Has(agent, rules_.last_tick); }
   /// Swaps the next row into `row` if it is complete; in real time also if it only lacks commands or messages and has
   /// waited `patience` ticks for them, or at all if `give_up`. Returns whether it did.
   bool Next(bool give_up, Row& row);
@@ -64,7 +74,13 @@ class RowWindow {
   Slot& SlotOf(std::int64_t tick) { return slots_[static_cast<std::size_t>(tick) % slots_.size()]; }
   /// Clears `slot` for `tick`. Throws std::runtime_error if its row is not taken yet, or `tick` is too far ahead.
   void Begin(Slot& slot, std::int64_t tick) const;
-  bool IsReady(const Slot& slot, bool give_up) const;
+  bool IsReady(const Slot& slot, bool give_up);
+  /// Whether the slot has everything but what lost agents do not send.
+  bool IsWhole(const Slot& slot) const;
+  /// Whether the states of a tick have come, and the events that they speak of, if those of earlier rows are known.
+  bool HasStates(const Slot& slot, std::int64_t events_before) const;
+  /// Whether agents of the topic are lost at `tick`.
+  bool IsSilent(const Topic& topic, std::int64_t tick) const;
 
   const Rules rules_;
   std::vector<Slot> slots_;
@@ -72,6 +88,9 @@ class RowWindow {
   std::int64_t rows_ = 0;
   std::int64_t events_ = 0;  // in rows taken so far
   std::int64_t newest_event_ = 0;
+  Silences silences_;
+  std::set<int> doubted_;      // agents
+  std::size_t silent_ = 0;     // topics of agents that are lost now
   std::int64_t complete_ = 0;  // rows completed since the last Next()
   std::int64_t newest_ = -1;
   std::uint64_t lost_ = 0;

@@ -54,6 +54,8 @@ const char* Text(Ask ask) {
       return "pace";
     case Ask::kEvent:
       return "event";
+    case Ask::kLose:
+      return "lose";
   }
   return "unknown";
 }
@@ -138,6 +140,16 @@ void RunLinks::HandOutExperiment() {
       process_table_.WantExperiment();
     if (!process_table_.IsTimeToHandOut(Now())) return;
   }
+  PublishExperiment();
+}
+
+void RunLinks::HandOutExperiment(std::int64_t from_tick, std::vector<mascot_msgs::msg::Event> events) {
+  message_.from_tick(static_cast<std::uint64_t>(from_tick));
+  message_.events(std::move(events));
+  PublishExperiment();
+}
+
+void RunLinks::PublishExperiment() {
   message_.processes().clear();
   for (const auto& [process, key] : peers_.Places()) {
     message_.processes().emplace_back();
@@ -189,6 +201,19 @@ void RunLinks::Steer(const RunRequests::Order& order, std::uint32_t number) {
   if (order.event) request.toml(order.event->Toml());
   requests_.Write(request);
   if (is_new) Note(fmt::format("request {}: {} {} {}", number, Text(ask), order.number, request.toml()));
+}
+
+void RunLinks::Lose(AgentRange agents) {
+  constexpr auto kBetween = 200ms;
+  ProcessTable::Time& next = next_losses_[ProcessName(agents)];
+  const auto now = Now();
+  if (now < next) return;
+  next = now + kBetween;
+  mascot_msgs::msg::Request request;
+  request.kind(static_cast<std::uint8_t>(Ask::kLose));
+  for (int id = agents.first; id <= agents.last; ++id) request.agents().push_back(static_cast<std::uint32_t>(id));
+  Note("asks the physics server to go on without " + ProcessName(agents));
+  requests_.Write(request);
 }
 
 std::int64_t RunLinks::server_words() const {

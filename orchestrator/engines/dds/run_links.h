@@ -3,9 +3,11 @@
 #include <spdlog/logger.h>
 
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bus/bus.h"
 #include "bus/wire.h"
@@ -31,6 +33,8 @@ class RunLinks {
   /// Publishes the experiment if a process has asked for it, or if the places of the run's processes have changed. An
   /// agent that comes late gets what was published before, and so need not ask. Cheap to call often.
   void HandOutExperiment();
+  /// Publishes the experiment, for processes that start at `from_tick`, with all events before that tick.
+  void HandOutExperiment(std::int64_t from_tick, std::vector<mascot_msgs::msg::Event> events);
   /// Publishes that the recorder is ready, at most five times a second. Cheap to call often. `pace` is the pace at the
   /// start, in simulated seconds per second; 0: as fast as the machine can.
   void SayReady(double pace);
@@ -40,6 +44,8 @@ class RunLinks {
   void Ask(mascot::Ask ask, const std::string& reason);
   /// Publishes a numbered request to the physics server: again at most five times a second. Cheap to call often.
   void Steer(const RunRequests::Order& order, std::uint32_t number);
+  /// Tells the physics server that agents are lost: again at most five times a second. Cheap to call often.
+  void Lose(AgentRange agents);
   /// Number of statuses that the physics server has sent.
   std::int64_t server_words() const;
   /// Number of processes that listen to requests.
@@ -53,6 +59,7 @@ class RunLinks {
   std::string Missing() const;
 
  private:
+  void PublishExperiment();
   void OnStatus(const Status& status, const std::string& from);
   /// Writes a line to the log.
   void Note(const std::string& words);
@@ -61,10 +68,11 @@ class RunLinks {
   std::function<void()> wake_;
   spdlog::logger log_;
   mascot_msgs::msg::Experiment message_;
-  std::uint64_t told_ = 0;             // version of peers_ at the last look
-  std::uint32_t newest_request_ = 0;   // number of the last request of Steer()
-  ProcessTable::Time next_request_{};  // when it may be sent again
-  mutable std::mutex mutex_;           // guards what follows
+  std::uint64_t told_ = 0;                                 // version of peers_ at the last look
+  std::uint32_t newest_request_ = 0;                       // number of the last request of Steer()
+  ProcessTable::Time next_request_{};                      // when it may be sent again
+  std::map<std::string, ProcessTable::Time> next_losses_;  // likewise, by process
+  mutable std::mutex mutex_;                               // guards what follows
   ProcessTable process_table_;
   std::int64_t server_words_ = 0;
 

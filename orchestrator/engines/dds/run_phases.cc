@@ -118,10 +118,19 @@ void RunPhases::JudgeExits() {
   exits_deadline_.reset();
   if (exits_.empty()) return;
   std::string why;
+  bool goes_on = true;
   for (const Exit& exit : std::exchange(exits_, {})) {
-    if (signal_ != 0 && exit.code == 128 + signal_) continue;
-    why += (why.empty() ? "" : "\n") + Story(exit.process, exit.text, rules_.last_lines(exit.process));
+    const bool by_the_signal = signal_ != 0 && exit.code == 128 + signal_;
+    std::string story = by_the_signal ? "" : Story(exit.process, exit.text, rules_.last_lines(exit.process));
+    if (!by_the_signal && phase_ == Phase::kFlying && rules_.is_loss(exit.process)) {
+      losses_.emplace_back(exit.process, std::move(story));
+      continue;
+    }
+    goes_on = false;
+    if (by_the_signal) continue;
+    why += (why.empty() ? "" : "\n") + story;
   }
+  if (goes_on) return;
   if (!why.empty()) Note(why);
   Finish();
 }

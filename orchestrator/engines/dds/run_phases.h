@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "physics_server/process/progress_watch.h"
@@ -36,6 +37,8 @@ class RunPhases {
 
     std::function<std::string()> violation;  ///< how the DDS endpoints differ from the graph; empty: they do not
     std::function<std::string()> missing;    ///< what the start still waits for
+    /// Whether the exit of this process is the loss of its agents, with which the run goes on (run.on_agent_loss).
+    std::function<bool(const std::string& process)> is_loss;
     /// The last lines that a child printed.
     std::function<std::vector<std::string>(const std::string& process)> last_lines;
   };
@@ -75,8 +78,10 @@ class RunPhases {
   /// Call it when a user asks for the end of the run: as the first signal, but the run counts as one that has ended by
   /// itself.
   Actions OnRequestToStop(Time now);
-  /// Call it when children have exited by themselves. Before the run is over, that is a failure.
+  /// Call it when children have exited by themselves. Before the run is over, that is a failure, or a loss.
   void OnExits(const std::vector<Exit>& exits, Time now);
+  /// The processes whose agents are lost since the last call, with how they ended and why.
+  std::vector<std::pair<std::string, std::string>> TakeLosses() { return std::exchange(losses_, {}); }
   /// Makes the run fail, because of `why`. Only the first failure is kept; if the DDS endpoints differ from the graph,
   /// that difference is given as the reason instead.
   void Fail(const std::string& why);
@@ -116,7 +121,8 @@ class RunPhases {
   bool server_exited_ = false;  // by itself, with an exit code: its last status may still be on its way
   bool server_silent_ = false;  // killed, or hangs: no more statuses are expected
   std::vector<Exit> exits_;     // not judged yet (JudgeExits)
-  std::int64_t rows_ = 0;       // rows recorded at the last Look()
+  std::vector<std::pair<std::string, std::string>> losses_;  // TakeLosses()
+  std::int64_t rows_ = 0;                                    // rows recorded at the last Look()
   std::optional<Time> exits_deadline_, stop_deadline_, drain_deadline_, report_deadline_;
   ProgressWatch watch_;
 };

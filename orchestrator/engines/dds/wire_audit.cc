@@ -133,6 +133,12 @@ void WireAudit::OnParticipantGone(const GuidPrefix& participant) {
   peers_.Leave(participant);
 }
 
+void WireAudit::OnEnd(const std::string& process) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(participants_, [&](const auto& entry) { return entry.second.process == process; });
+  std::erase_if(endpoints_, [&](const auto& entry) { return entry.second.owner.process == process; });
+}
+
 void WireAudit::OnEndpoint(const Guid& guid, const std::string& dds_topic, bool reads) {
   const auto topic = Topic::Parse(dds_topic);
   if (!topic || !IsOfTheRun(experiment_, *topic)) return;

@@ -27,6 +27,8 @@ class WireAudit : public eprosima::fastdds::dds::DomainParticipantListener {
 
   /// The first violation that was found: which process reads or writes a topic that it must not. Empty: there was none.
   std::string Violation() const;
+  /// This process has ended: what it has read and written is not there any more, whatever discovery still believes.
+  void OnEnd(const std::string& process);
   /// Whether every reader that the graph requires, and every writer of the agents, has been discovered.
   bool IsComplete() const;
 

@@ -93,11 +93,11 @@ TEST_F(BundleInboxTest, ATickWaitsForTheEventsThatItsStatesSpeakOf) {
   BundleInbox inbox(silent_, {2, 3});
   EXPECT_EQ(inbox.OnBundle(Bundle(0, sources_, 2, {}, /*events=*/2)), News::kWaits);
   EXPECT_EQ(inbox.OnBundle(Bundle(0, sources_, 2, {}, /*events=*/2)), News::kWaits) << "sent again";
-  EXPECT_FALSE(inbox.OnEvent(1));
-  EXPECT_TRUE(inbox.OnEvent(2));
+  EXPECT_FALSE(inbox.OnEvent(1, {}));
+  EXPECT_TRUE(inbox.OnEvent(2, {}));
   EXPECT_EQ(inbox.events(), 2);
   inbox.Answered();
-  EXPECT_FALSE(inbox.OnEvent(3));
+  EXPECT_FALSE(inbox.OnEvent(3, {}));
   EXPECT_EQ(inbox.OnBundle(Bundle(1, sources_, 2, {}, /*events=*/3)), News::kComplete);
 }
 
@@ -113,6 +113,32 @@ TEST_F(BundleInboxTest, MessagesAreThoseOfTheTickBefore) {
   EXPECT_THAT(inbox.SamplesOf(3)[0].message, ElementsAre(0.2));
   EXPECT_THAT(inbox.SamplesOf(3)[1].message, ElementsAre(0.4));
   EXPECT_EQ(inbox.SamplesOf(3)[1].message_age, 1);
+}
+
+TEST_F(BundleInboxTest, AgentsThatAreLostSendNoMessages) {
+  BundleInbox inbox(talking_, {2, 3});
+  inbox.OnBundle(Bundle(0, sources_, 2));
+  inbox.Answered();
+  EXPECT_THAT(
+      [&] {
+        inbox.OnBundle(Bundle(1, sources_, 2, {{2, 0, {}}, {3, 0, {}}, {4, 0, {}}}));
+      },
+      ThrowsMessage<std::runtime_error>("a bundle of tick 1 without a message of agent 1"));
+  BundleInbox other(talking_, {2, 3});
+  other.OnBundle(Bundle(0, sources_, 2));
+  other.Answered();
+  const Fault killed{.agent = 1, .kind = FaultKind::kKill, .unanswered = true};
+  EXPECT_EQ(other.OnBundle(Bundle(1, sources_, 2, {{2, 0, {}}, {3, 0, {}}, {4, 0, {}}}, /*events=*/1)), News::kWaits);
+  EXPECT_TRUE(other.OnEvent(1, {.tick = 1, .fault = killed}));
+  other.Answered();
+  EXPECT_FALSE(other.OnEvent(2, {.tick = 3, .restart = 1}));
+  EXPECT_EQ(other.OnBundle(Bundle(3, sources_, 2, {{2, 2, {}}, {3, 2, {}}, {4, 2, {}}}, 2)), News::kComplete);
+  other.Answered();
+  EXPECT_THAT(
+      [&] {
+        other.OnBundle(Bundle(4, sources_, 2, {{2, 3, {}}, {3, 3, {}}, {4, 3, {}}}, 2));
+      },
+      ThrowsMessage<std::runtime_error>("a bundle of tick 4 without a message of agent 1"));
 }
 
 TEST_F(BundleInboxTest, InRealTimeMessagesMayBeMissingAndTheNewestCounts) {
@@ -142,7 +168,7 @@ TEST_F(BundleInboxTest, WhatIsNotForTheseAgentsIsRefusedAndChangesNothing) {
   refused(Bundle(1, {2, 3, 1, 5}, 2, all),
           "a bundle of tick 1 with a state of agent 5 at tick 1 in the place of agent 4's");
   refused(Bundle(101, sources_, 2, all), "a bundle of tick 101, the last one is 100");
-  refused(Bundle(1, sources_, 2), "a bundle of tick 1 with 0 messages, expected 4");
+  refused(Bundle(1, sources_, 2), "a bundle of tick 1 without a message of agent 2");
   refused(Bundle(1, sources_, 2, {{2, 0, {}}, {3, 0, {}}, {1, 0, {}}, {5, 0, {}}}),
           "a bundle of tick 1 with a message of agent 5 at tick 0");
   refused(Bundle(2, sources_, 2, all), "a bundle of tick 2 with a message of agent 2 at tick 0");

@@ -37,6 +37,11 @@ class Inbox {
     return Keep(inbox_.OnMessage(source, tick, std::vector<double>{number}));
   }
 
+  /// Passes event number 1, which takes effect at `tick`.
+  std::int64_t Killed(int agent, std::int64_t tick, bool unanswered) {
+    return Keep(inbox_.OnEvent(1, {.tick = tick, .fault = Fault{.agent = agent, .unanswered = unanswered}}));
+  }
+
   // Contents of the last complete tick.
   double self_x() const { return complete_.value().self->p_WB.x(); }
   std::vector<double> xs() const {
@@ -289,6 +294,26 @@ TEST(TickInbox, DoesNotAnswerWithStatesOfDifferentTicksInRealTime) {
   EXPECT_EQ(inbox.State(2, 3), -1);
   inbox.State(2, 4);
   EXPECT_EQ(inbox.State(0, 4), 4);
+}
+
+// --- lost peers -----------------------------------------------------------------------------------------
+
+TEST(TickInbox, WaitsForNoMessageOfAPeerThatIsLost) {
+  for (const bool unanswered : {false, true}) {
+    Inbox inbox({{.id = 2, .sends_messages = true}, {.id = 3, .sends_messages = true}});
+    for (const std::size_t source : {0, 1}) inbox.State(source, 0);
+    ASSERT_EQ(inbox.State(2, 0), 0);
+    inbox.Message(2, 0, 0.5);
+    for (const std::size_t source : {0, 1, 2}) inbox.State(source, 1);
+    // Killed at tick 1: what it said with its answer to tick 0 comes, unless it has not answered that.
+    EXPECT_EQ(inbox.Killed(2, 1, unanswered), unanswered ? 1 : -1);
+    if (!unanswered) {
+      EXPECT_EQ(inbox.Message(1, 0, 0.25), 1);
+    }
+    inbox.Message(2, 1, 0.5);
+    for (const std::size_t source : {0, 1}) inbox.State(source, 2);
+    EXPECT_EQ(inbox.State(2, 2), 2);
+  }
 }
 
 }  // namespace

@@ -207,10 +207,11 @@ TEST(Schemas, MatchTheSerialisedBytes) {
       "process": "agent_3", "agent": 3, "state": 5, "experiment": 11, "tick": 6, "misses": 7,
       "tick_lateness_s": [0.5, 1.5, 2.5], "command_age_s": [3.5, 4.5, 5.5],
       "agent_contacts": 8, "ground_contacts": 9, "obstacle_contacts": 10,
-      "request": 14, "request_tick": -1, "paused": true, "pace": 0.5, "reason": "none"},
-    "/request": {"kind": 2, "number": 13, "value": 1.5, "toml": "cut = [[1, 2]]", "reason": "over"},
+      "request": 14, "request_tick": -1, "paused": true, "pace": 0.5, "events": 0, "awaited": [],
+      "from_tick": 0, "reason": "none"},
+    "/request": {"kind": 2, "number": 13, "value": 1.5, "toml": "cut = [[1, 2]]", "agents": [], "reason": "over"},
     "/experiment": {"processes": [{"name": "", "bits": 0, "mask": 0}, {"name": "agent_3", "bits": 11, "mask": 12}],
-      "name": "n", "toml": "[run]"}})"));
+      "name": "n", "toml": "[run]", "from_tick": 0, "events": []}})"));
 }
 
 TEST(Schemas, ListEachDependencyOnceBehindALineOfEightyEqualSigns) {

@@ -59,5 +59,35 @@ TEST(TickBarrier, WaitsAgainForEveryAgentWhenTheNextTickOpens) {
   }
 }
 
+TEST(TickBarrier, DoesNotWaitForAgentsThatAreExcluded) {
+  TickBarrier barrier(3);
+  barrier.Open(0);
+  barrier.Exclude(2);
+  barrier.Exclude(2);
+  EXPECT_TRUE(barrier.Excludes(2));
+  EXPECT_THAT(barrier.Late(), ElementsAre(1, 3));
+  EXPECT_FALSE(barrier.Answer(2, 0)) << "its answers do not count";
+  EXPECT_FALSE(barrier.Answer(1, 0));
+  EXPECT_TRUE(barrier.Answer(3, 0));
+  barrier.Open(1);
+  EXPECT_FALSE(barrier.Answer(1, 1));
+  EXPECT_FALSE(barrier.IsComplete());
+  barrier.Exclude(3);
+  EXPECT_TRUE(barrier.IsComplete());
+  barrier.Include(2);
+  barrier.Open(2);
+  EXPECT_FALSE(barrier.Answer(1, 2));
+  EXPECT_TRUE(barrier.Answer(2, 2));
+}
+
+TEST(TickBarrier, AnAgentThatAnsweredBeforeItWasExcludedHasAnswered) {
+  TickBarrier barrier(2);
+  barrier.Open(0);
+  EXPECT_FALSE(barrier.Answer(1, 0));
+  barrier.Exclude(1);
+  EXPECT_FALSE(barrier.IsComplete());
+  EXPECT_TRUE(barrier.Answer(2, 0));
+}
+
 }  // namespace
 }  // namespace mascot

@@ -325,7 +325,8 @@ TEST(TickProtocol, NamesAgentsWhoseCommandIsHeldLongerThanTheTimeoutInRealTime) 
   const Turn turn = exchange.Look(kT0 + 22 * 250ms);
   EXPECT_EQ(turn.failure, "tick 21: no command from agent 2 within run.agent_timeout_s = 5.0 s");
   EXPECT_EQ(turn.actions, kNothing) << "the world is not stepped with it";
-  EXPECT_EQ(turn.due, kT0 + 22 * 250ms);
+  EXPECT_EQ(turn.late, std::vector<int>{2});
+  EXPECT_FALSE(turn.due) << "the tick has not ended";
 }
 
 TEST(TickProtocol, FallsBehindInRealTimeOnASlowMachine) {
@@ -535,6 +536,82 @@ TEST(TickProtocol, StepsOfAPausedRealTimeRunWaitForEveryCommand) {
   EXPECT_EQ(exchange.Look(kT0).actions, kStepAndPublish);
   EXPECT_EQ(exchange.OnCommand(1, 2), kTakeAndWake);
   EXPECT_TRUE(exchange.Look(kT0).held);
+}
+
+// --- losses ---------------------------------------------------------------------------------------------
+
+TEST(TickProtocol, GoesOnWithoutAnAgentThatIsLost) {
+  Exchange exchange = Lockstep(2);
+  const Time now = (kT0 + 0s);
+  EXPECT_EQ(exchange.OnCommand(1, 0), kTake);
+  EXPECT_EQ(exchange.Lose(2, true), kWake) << "the loop goes on";
+  const Turn turn = exchange.Look(now);
+  EXPECT_EQ(turn.actions, kStepAndPublish);
+  EXPECT_EQ(turn.next_deadline, now);
+  EXPECT_EQ(exchange.OnCommand(2, 1), kNothing) << "what it sends too late does not count";
+  EXPECT_EQ(exchange.last_whole(), 1);
+  EXPECT_EQ(exchange.OnCommand(1, 1), kTakeStepAndPublish);
+}
+
+TEST(TickProtocol, ATickOfWhichTheNextOneWouldHaveSaidWhoHasNotAnsweredIsNotWhole) {
+  Exchange exchange = Lockstep(2);
+  exchange.OnAllCommands();
+  exchange.OnCommand(1, 1);
+  exchange.Lose(2, true);
+  EXPECT_FALSE(exchange.Look(kT0, kStop).next_deadline);
+  EXPECT_EQ(exchange.published(), 1);
+  EXPECT_EQ(exchange.last_whole(), 0);
+}
+
+TEST(TickProtocol, GoesOnWithoutAnybody) {
+  Exchange exchange = Lockstep(1, 2);
+  exchange.Lose(1, true);
+  EXPECT_EQ(exchange.Look((kT0 + 0s)).actions, kStepAndPublish);
+  EXPECT_EQ(exchange.Look((kT0 + 0s)).actions, kStepAndPublish);
+  EXPECT_FALSE(exchange.Look((kT0 + 0s)).next_deadline);
+  EXPECT_TRUE(exchange.finished());
+}
+
+TEST(TickProtocol, TellsWhoIsLateAndWaitsForThemNoMoreIfTheyAreLost) {
+  Exchange exchange = Lockstep(3);
+  exchange.OnCommand(2, 0);
+  exchange.Look((kT0 + 0s));
+  const Turn turn = exchange.Look((kT0 + 6s));
+  EXPECT_EQ(turn.failure, "tick 0: no command from agents 1, 3 within run.agent_timeout_s = 5.0 s");
+  EXPECT_EQ(turn.late, (std::vector<int>{1, 3}));
+  ASSERT_TRUE(turn.next_deadline);
+  for (const int id : turn.late) exchange.Lose(id, true);
+  EXPECT_EQ(exchange.Look((kT0 + 6s)).actions, kStepAndPublish);
+}
+
+TEST(TickProtocol, AFreshAgentIsWaitedForAgain) {
+  Exchange exchange = Lockstep(2);
+  exchange.Lose(2, true);
+  EXPECT_EQ(exchange.OnCommand(1, 0), kTakeStepAndPublish);
+  exchange.Regain(2);
+  EXPECT_EQ(exchange.OnCommand(1, 1), kTake);
+  EXPECT_EQ(exchange.OnCommand(2, 1), kTakeStepAndPublish);
+}
+
+TEST(TickProtocol, HoldsATickUntilItIsReleased) {
+  Exchange exchange = Lockstep(1);
+  exchange.Hold();
+  EXPECT_EQ(exchange.OnCommand(1, 0), (Actions{.take = true, .step = true}));
+  const Turn turn = exchange.Look((kT0 + 100s));
+  EXPECT_EQ(turn.actions, kNothing);
+  EXPECT_TRUE(turn.held);
+  EXPECT_EQ(turn.failure, "") << "however long it takes";
+  EXPECT_EQ(exchange.OnRecorded(1), kNothing);
+  EXPECT_EQ(exchange.Release(), (Actions{.publish = true, .wake = true}));
+  EXPECT_EQ(exchange.OnCommand(1, 1), kTakeStepAndPublish);
+}
+
+TEST(TickProtocol, StopsWhileItHoldsATick) {
+  Exchange exchange = Lockstep(1);
+  exchange.Hold();
+  exchange.OnCommand(1, 0);
+  EXPECT_FALSE(exchange.Look((kT0 + 1s), kStop).next_deadline);
+  EXPECT_TRUE(exchange.finished());
 }
 
 }  // namespace

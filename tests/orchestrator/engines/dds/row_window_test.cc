@@ -200,5 +200,80 @@ TEST_F(RealtimeRowWindowTest, ACommandIsNotTakenForAnotherTicks) {
   }
 }
 
+// --- agents that are lost -------------------------------------------------------------------------------
+
+class LostAgentsTest : public RowWindowTest {
+ protected:
+  /// Event number `number`: agent 2 is lost at `tick`, or comes back.
+  void Lose(std::int64_t tick, int number, bool unanswered = false) {
+    window_.TakeEvent({.tick = tick, .fault = Fault{.agent = 2, .unanswered = unanswered}}, kBytes, number);
+  }
+  void Restart(std::int64_t tick, int number) { window_.TakeEvent({.tick = tick, .restart = 2}, kBytes, number); }
+  void SendAllBut(std::size_t left_out, std::int64_t tick, std::int64_t events = 0) {
+    for (std::size_t topic = 0; topic < sent_.size(); ++topic)
+      if (topic != left_out) SendWith(topic, tick, events);
+  }
+  void SendWith(std::size_t topic, std::int64_t tick, std::int64_t events) {
+    window_.CheckSequence(topic, ++sent_[topic]);
+    window_.Take(topic, tick, std::vector<std::uint8_t>{1}, topic == kState1 || topic == kState2 ? events : 0);
+  }
+  const std::vector<std::uint8_t> kBytes{7};
+};
+
+TEST_F(LostAgentsTest, RowsLackTheirCommandsUntilTheyComeBack) {
+  SendTick(0);
+  ASSERT_TRUE(Next());
+  SendAllBut(kCommand2, 1, 1);
+  EXPECT_FALSE(Next()) << "the event has not come";
+  Lose(1, 1);
+  EXPECT_TRUE(window_.IsLost(2));
+  ASSERT_TRUE(Next());
+  EXPECT_TRUE(row_.commands[1].empty());
+  EXPECT_FALSE(row_.commands[0].empty());
+  EXPECT_EQ(row_.events.size(), 1U);
+  Restart(2, 2);
+  EXPECT_FALSE(window_.IsLost(2));
+  SendAllBut(kCommand2, 2, 2);
+  EXPECT_FALSE(Next());
+  SendWith(kCommand2, 2, 0);
+  ASSERT_TRUE(Next());
+  EXPECT_FALSE(row_.commands[1].empty());
+}
+
+TEST_F(LostAgentsTest, ARowMayWaitForTheEventOfTheNextTick) {
+  SendAllBut(kCommand2, 0);
+  EXPECT_FALSE(Next());
+  Lose(1, 1, /*unanswered=*/true);
+  ASSERT_TRUE(Next());
+  EXPECT_TRUE(row_.commands[1].empty());
+}
+
+TEST_F(LostAgentsTest, WhatComesTooLateIsLeftOut) {
+  window_.Doubt(2);
+  SendTick(0);
+  EXPECT_FALSE(Next()) << "it may be that this command has not reached the server";
+  Lose(1, 1, /*unanswered=*/true);
+  ASSERT_TRUE(Next());
+  EXPECT_TRUE(row_.commands[1].empty());
+}
+
+TEST_F(LostAgentsTest, ADoubtEndsWithTheStatesOfTheNextTick) {
+  window_.Doubt(2);
+  SendTick(0);
+  EXPECT_FALSE(Next());
+  EXPECT_FALSE(Next());
+  SendAllBut(kCommand2, 1);
+  ASSERT_TRUE(Next());
+  EXPECT_FALSE(row_.commands[1].empty());
+}
+
+TEST_F(LostAgentsTest, ARowThatWasTakenWithAnAnswerThatTheServerLacksIsAnError) {
+  SendTick(0);
+  ASSERT_TRUE(Next());
+  EXPECT_THAT([&] { Lose(1, 1, /*unanswered=*/true); },
+              ThrowsMessage<std::runtime_error>("the recording is not complete: it has a command of agent 2 at tick 0, "
+                                                "which has not reached the physics server"));
+}
+
 }  // namespace
 }  // namespace mascot

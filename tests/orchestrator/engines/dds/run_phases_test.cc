@@ -30,6 +30,7 @@ class RunPhasesTest : public testing::Test {
             .period_s = period_s,
             .violation = [this] { return violation_; },
             .missing = [] { return std::string("nothing was heard of agent_2"); },
+            .is_loss = [this](const std::string& process) { return goes_on_ && process != "physics_server"; },
             .last_lines =
                 [this](const std::string& process) {
                   return printed_.empty() ? std::vector<std::string>{process + " sighs"} : printed_;
@@ -61,6 +62,7 @@ class RunPhasesTest : public testing::Test {
   }
 
   std::string violation_;
+  bool goes_on_ = false;              // run.on_agent_loss is not "abort"
   std::vector<std::string> printed_;  // by a child that has ended; empty: it has sighed
   RunPhases::Time now_ = RunPhases::Time() + 1h;
   View view_;
@@ -431,6 +433,47 @@ TEST_F(RunPhasesTest, AServerThatDoesNotStopWhenAskedToFailsTheRun) {
   phases_.OnRequestToStop(now_);
   LookAfter(5001ms);
   EXPECT_EQ(phases_.failure(), "asked to stop, physics_server did not within 5 s");
+}
+
+// --- losses ---------------------------------------------------------------------------------------------
+
+TEST_F(RunPhasesTest, AnAgentThatDiesInFlightIsALossIfTheRunGoesOn) {
+  goes_on_ = true;
+  Fly();
+  Exits("agent_2", std::nullopt, "was killed by signal 9 (Killed)");
+  Look();
+  EXPECT_EQ(phases_.phase(), Phase::kFlying);
+  EXPECT_TRUE(phases_.in_order());
+  const auto losses = phases_.TakeLosses();
+  ASSERT_EQ(losses.size(), 1U);
+  EXPECT_EQ(losses[0].first, "agent_2");
+  EXPECT_EQ(losses[0].second, "agent_2 was killed by signal 9 (Killed)\n  agent_2 | agent_2 sighs");
+  EXPECT_TRUE(phases_.TakeLosses().empty());
+}
+
+TEST_F(RunPhasesTest, AnAgentThatDiesWhileTheRunIsStoppedIsALossToo) {
+  goes_on_ = true;
+  Fly();
+  phases_.OnSignal(SIGINT, now_);
+  Exits("agent_2", std::nullopt, "was killed by signal 9 (Killed)");
+  EXPECT_EQ(phases_.phase(), Phase::kFlying);
+  EXPECT_EQ(phases_.failure(), "");
+  EXPECT_EQ(phases_.TakeLosses().size(), 1U);
+}
+
+TEST_F(RunPhasesTest, AnAgentThatDiesBeforeTheFirstTickOrAServerIsAFailure) {
+  goes_on_ = true;
+  Exits("agent_2", 1, "exited with code 1");
+  Look();
+  EXPECT_FALSE(phases_.in_order());
+}
+
+TEST_F(RunPhasesTest, AServerThatDiesIsAFailureAlsoIfTheRunGoesOnWithoutAgents) {
+  goes_on_ = true;
+  Fly();
+  Exits("physics_server", std::nullopt, "was killed by signal 9 (Killed)");
+  Look();
+  EXPECT_THAT(phases_.failure(), testing::StartsWith("physics_server was killed by signal 9"));
 }
 
 }  // namespace

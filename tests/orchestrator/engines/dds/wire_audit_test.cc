@@ -299,5 +299,15 @@ TEST(WireAudit, IsNotCompleteWithoutEveryReaderOfMessages) {
   EXPECT_EQ(audit.Violation(), "");
 }
 
+// --- fresh processes ------------------------------------------------------------------------------------
+
+TEST_F(WireAuditTest, AProcessThatHasEndedWritesNothingAnyMore) {
+  Writes(Participant(102), Topic::Command(2));
+  audit_.OnEnd("agent_2");  // discovery has not noticed
+  Start("agent_2", 112);
+  Writes(Participant(112), Topic::Command(2));
+  EXPECT_EQ(audit_.Violation(), "");
+}
+
 }  // namespace
 }  // namespace mascot
