@@ -7,7 +7,6 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -98,8 +97,8 @@ Request GoToRequest(const SendArgs& /*args*/, const std::vector<std::string>& wo
 Request FaultRequest(const SendArgs& /*args*/, const std::vector<std::string>& words) {
   Value::Table fault{{"agent", {static_cast<std::int64_t>(NumberOf(words[0], "an agent's number"))}},
                      {"kind", {words[1]}}};
-  for (const std::string& word : words | std::views::drop(2))
-    if (!fault.insert(Assignment(word)).second) Expected("each key once", word);
+  for (std::size_t i = 2; i < words.size(); ++i)
+    if (!fault.insert(Assignment(words[i])).second) Expected("each key once", words[i]);
   return {.kind = Request::Kind::kEvent, .toml = "fault = " + ToToml(Value{std::move(fault)})};
 }
 

@@ -179,7 +179,7 @@ void Server::LookForRestarts() {
       others_live = others_live || (!restarts(id) && !live_.current().agent(id).faults.is_lost());
     }
     if (!any || others_live) continue;  // the agent begins anew in the process of the others
-    if (!restart_) restart_.emplace();
+    if (!restart_) restart_ = Restart{};
     if (std::ranges::find(restart_->processes, process) == restart_->processes.end())
       restart_->processes.push_back(process);
   }

@@ -211,25 +211,26 @@ struct Storm {
 class RandomKills : public testing::TestWithParam<Storm> {};
 
 TEST_P(RandomKills, FlyAgainByteForByte) {
-  const auto& [on_agent_loss, agents, wanted, said_before, says] = GetParam();
+  const Storm& storm = GetParam();
   ScratchFolder folder;
   WriteFile(folder.File("storm.toml"),
-            "[run]\nduration_s = 100000.0\npace = 5.0\nrestart_after_s = 0.1\non_agent_loss = '" + on_agent_loss +
-                "'\n[agents]\ncount = " + std::to_string(agents) +
+            "[run]\nduration_s = 100000.0\npace = 5.0\nrestart_after_s = 0.1\non_agent_loss = '" + storm.on_agent_loss +
+                "'\n[agents]\ncount = " + std::to_string(storm.agents) +
                 "\n[graph]\ntopology = 'ring'\n[law]\nname = 'event_triggered'\n");
   Up up(folder, "run", folder.File("storm.toml"), {"--engine", "dds"});
   ASSERT_TRUE(Flies(up));
   std::mt19937 random(1);  // NOLINT(bugprone-random-generator-seed): the same kills each time
-  std::vector<int> ids(static_cast<std::size_t>(agents));
+  std::vector<int> ids(static_cast<std::size_t>(storm.agents));
   std::iota(ids.begin(), ids.end(), 1);
   std::size_t kills = 0;
-  while (kills < wanted) {
+  while (kills < storm.kills) {
     std::ranges::shuffle(ids, random);
     for (std::size_t at_once = 1 + random() % 3; at_once > 0; --at_once) {
       const pid_t agent = up.Child("agent_" + std::to_string(ids[at_once]));
       if (agent > 0 && kill(agent, SIGKILL) == 0) ++kills;
     }
-    ASSERT_TRUE(Until([&] { return CountOf(says, up.err()) >= said_before + kills || up.IsOver(); }, kPatienceForRuns))
+    ASSERT_TRUE(Until([&] { return CountOf(storm.says, up.err()) >= storm.said_before + kills || up.IsOver(); },
+                      kPatienceForRuns))
         << up.err();
     ASSERT_FALSE(up.IsOver()) << up.err();
   }
