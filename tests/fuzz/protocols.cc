@@ -152,7 +152,8 @@ void FuzzRowAssembler(Events& events) {
   const std::int64_t ticks = events.ConsumeIntegralInRange<std::int64_t>(1, 10);
   const RecordedTicks recorded(ticks, 1 + ticks % 3);
   std::int64_t rows = 0;
-  RowAssembler assembler({"fuzz.mcap", 2, kRate, recorded, events.ConsumeBool()}, [&](const Row& row) {
+  const std::vector<int> commands = events.ConsumeBool() ? std::vector{1, 2} : std::vector<int>{};
+  RowAssembler assembler({"fuzz.mcap", 2, kRate, recorded, commands}, [&](const Row& row) {
     Require(row.tick == recorded.TickOf(rows++), "a row twice, or left out");
   });
   const Topic topics[] = {Topic::Command(1), Topic::State(1), Topic::Command(2), Topic::State(2)};
@@ -199,11 +200,13 @@ void FuzzProcessTable(Events& events) {
 }
 
 void FuzzRunPhases(Events& events) {
+  const bool loses = events.ConsumeBool();  // the run goes on without an agent
   RunPhases phases({.start_timeout_s = 10,
                     .agent_timeout_s = 5,
                     .period_s = events.ConsumeBool() ? 0.01 : 0,
                     .violation = [] { return std::string(); },
                     .missing = [] { return std::string("agent_1"); },
+                    .is_loss = [&](const std::string&) { return loses; },
                     .last_lines = [](const std::string&) { return std::vector<std::string>{"its last words"}; }},
                    Time{});
   Time now{};
@@ -236,6 +239,7 @@ void FuzzRunPhases(Events& events) {
         phases.Look(view, now);
     }
     Require(phases.phase() >= phase, "a phase came back");
+    Require(phases.TakeLosses().empty() || loses, "an agent is lost, and the run cannot go on without it");
     phase = phases.phase();
   }
 }
