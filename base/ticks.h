@@ -16,7 +16,7 @@ inline std::int64_t TicksRoundedUp(double time_s, int rate_hz) {
   return std::max<std::int64_t>(0, std::llround(std::ceil(time_s * rate_hz - ticks_internal::kRounding)));
 }
 
-/// Likewise, rounded down.
+/// The whole ticks within `time_s`, with the same tolerance for rounding errors.
 inline std::int64_t TicksRoundedDown(double time_s, int rate_hz) {
   return std::llround(std::floor(time_s * rate_hz + ticks_internal::kRounding));
 }

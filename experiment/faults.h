@@ -59,8 +59,8 @@ struct Fault {
   double period_s = 0;              ///< of what is slow
   double delay_s = 0;               ///< of what is delayed
   double probability = 0;           ///< per tick, that what is intermittent fails
-  /// Of kill and hang: the agent has not answered the tick before, either. So is the loss of a process that died before
-  /// it had answered: its neighbours had the states of that tick.
+  /// Of kill and hang: the agent has not answered the tick before the event, either. A process that dies before it
+  /// answers a tick is lost in this way: its neighbours have heard its state of that tick, and its command never came.
   bool unanswered = false;
 
   bool IsLoss() const { return kind == FaultKind::kKill || kind == FaultKind::kHang; }

@@ -98,7 +98,7 @@ TickProtocol::Turn TickProtocol::Look(Time now, bool stop_requested) {
   if (paced_) return LookAtClock(now, stop_requested);
   if (AwaitsPublication()) return AwaitsRecorder() ? Watch(now) : LookAtGate(now, stop_requested);
   if (!barrier_.IsComplete()) return Watch(now);
-  // Those who had not answered are lost.
+  // The agents that had not answered are lost, so that the tick ends here and not in OnCommand().
   Turn turn{.actions = EndOfAnswers(stop_requested)};
   if (!finished_) turn.next_deadline = now;
   return turn;
