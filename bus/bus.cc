@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "bus/discoveries.h"
 #include "bus/wire.h"
 #include "experiment/processes.h"
 
@@ -38,8 +39,11 @@ void DisableIntraprocessDelivery() {
 /// Joins the domain. Throws BusError if Fast DDS refuses, and in words if it fails on the way: if it cannot start one
 /// of its threads, it joins it all the same, which is an "Invalid argument".
 dds::DomainParticipant* CreateParticipant(const DomainOptions& options, dds::DomainParticipantListener* discovery) try {
-  return dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<dds::DomainId_t>(options.domain), ParticipantQos(options), discovery, dds::StatusMask::none());
+  dds::DomainParticipantQos qos = ParticipantQos(options);
+  std::optional<Enclave> enclave;
+  if (options.credentials != nullptr) enclave.emplace(*options.credentials).Secure(qos);
+  return dds::DomainParticipantFactory::get_instance()->create_participant(static_cast<dds::DomainId_t>(options.domain),
+                                                                           qos, discovery, dds::StatusMask::none());
 } catch (const std::invalid_argument&) {
   throw;
 } catch (const std::exception& failure) {
@@ -56,7 +60,8 @@ Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* 
     : wake_(std::move(wake)),
       peers_(peers),
       redelivery_(options.loopback ? Redelivery::kSeldom : Redelivery::kOften),
-      discoveries_(std::make_unique<Discoveries>(*this, discovery)) {
+      discoveries_(
+          std::make_unique<Discoveries>([this] { Wake(); }, discovery, /*secure=*/options.credentials != nullptr)) {
   DisableIntraprocessDelivery();
   participant_ =
       Own<dds::DomainParticipant>(CreateParticipant(options, discoveries_.get()),
@@ -71,24 +76,9 @@ Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* 
                                      [participant](auto* subscriber) { participant->delete_subscriber(subscriber); });
 }
 
-void Domain::Discoveries::on_participant_discovery(dds::DomainParticipant* participant,
-                                                   eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) {
-  using Info = eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
-  if (info.status == Info::DISCOVERED_PARTICIPANT) ++participants_;
-  if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) --participants_;
-  if (next_ != nullptr) next_->on_participant_discovery(participant, std::move(info));
-  domain_.Wake();
-}
+Domain::~Domain() = default;
 
-void Domain::Discoveries::on_subscriber_discovery(dds::DomainParticipant* participant,
-                                                  eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) {
-  if (next_ != nullptr) next_->on_subscriber_discovery(participant, std::move(info));
-}
-
-void Domain::Discoveries::on_publisher_discovery(dds::DomainParticipant* participant,
-                                                 eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) {
-  if (next_ != nullptr) next_->on_publisher_discovery(participant, std::move(info));
-}
+int Domain::discovered() const { return discoveries_->participants(); }
 
 void Domain::Fail(std::exception_ptr failure) {
   {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <exception>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -28,6 +27,8 @@
 
 namespace mascot {
 
+class Discoveries;
+
 /// Fast DDS refused to create an entity or to send a sample.
 class BusError : public std::runtime_error {
  public:
@@ -44,7 +45,7 @@ using Handle = std::unique_ptr<Entity, std::function<void(Entity*)>>;
 inline constexpr std::chrono::seconds kTimeToDiscover(2);
 
 /// A process's participant, publisher and subscriber in the DDS domain of a run. Must outlive every reader and writer
-/// made in it.
+/// made in it. With credentials, only participants that have authenticated themselves count as discovered.
 class Domain {
  public:
   /// `wake` is called, from any thread, when a waiting loop should check again: a participant was discovered, a reader
@@ -54,9 +55,12 @@ class Domain {
   /// participant and endpoint. Both must outlive this object. Throws BusError, and what ParticipantQos() throws.
   Domain(const DomainOptions& options, std::function<void()> wake, Peers* peers = nullptr,
          eprosima::fastdds::dds::DomainParticipantListener* discovery = nullptr);
+  ~Domain();
+  Domain(const Domain&) = delete;
+  Domain& operator=(const Domain&) = delete;
 
   /// Number of other participants that have been discovered and have not gone.
-  int discovered() const { return discoveries_->participants(); }
+  int discovered() const;
   /// Rethrows the first exception given to Fail(), if any.
   void RethrowFailure() const;
   void Wake() const { wake_(); }
@@ -71,26 +75,6 @@ class Domain {
   friend class WriterBase;
   friend class ReaderBase;
   Handle<eprosima::fastdds::dds::Topic> MakeTopic(const Topic& topic, eprosima::fastdds::dds::TypeSupport type);
-
-  /// Counts participants, and passes on what discovery tells.
-  class Discoveries : public eprosima::fastdds::dds::DomainParticipantListener {
-   public:
-    Discoveries(const Domain& domain, eprosima::fastdds::dds::DomainParticipantListener* next)
-        : domain_(domain), next_(next) {}
-    int participants() const { return participants_; }
-
-    void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                                  eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-    void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                                 eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
-    void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
-                                eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
-
-   private:
-    const Domain& domain_;
-    eprosima::fastdds::dds::DomainParticipantListener* next_;
-    std::atomic<int> participants_ = 0;
-  };
 
   std::function<void()> wake_;
   Peers* peers_;

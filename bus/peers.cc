@@ -29,15 +29,27 @@ bool HasOneWriter(const Topic& topic) {
   return writer != TopicWriter::kOrchestratorOrServer && writer != TopicWriter::kEverybody;
 }
 
+void Peers::Add(const std::string& process, const ProcessKey& key, std::optional<ProcessKey> free) {
+  entries_.push_back(
+      {.process = process, .key = key, .proof = key.IsOfSubject() ? std::optional(key) : std::nullopt, .free = free});
+}
+
+std::string Peers::ProvenProcessOf(const GuidPrefix& participant) const {
+  const auto entry =
+      std::ranges::find_if(entries_, [&](const Entry& any) { return any.proof && any.proof->Fits(participant); });
+  return entry == entries_.end() ? std::string() : entry->process;
+}
+
 void Peers::Know(const std::string& process, const ProcessKey& key) {
   const std::lock_guard lock(mutex_);
   const auto entry = std::ranges::find(entries_, process, &Entry::process);
   if (entry == entries_.end()) {
-    entries_.push_back({process, key});
+    Add(process, key, /*free=*/{});
   } else if (key.IsExact()) {
     entry->key = key;
-  } else if (key.IsOfPid() && !key.Fits(entry->key)) {
-    *entry = {process, key};
+  } else if (key.IsOfAStart() && !key.Fits(entry->key)) {
+    entries_.erase(entry);
+    Add(process, key, /*free=*/{});
     ++version_;
   }
 }
@@ -57,44 +69,56 @@ std::uint64_t Peers::version() const {
 std::optional<std::size_t> Peers::Find(const GuidPrefix& participant, std::string_view name) const {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    const auto& [process, key, claimant] = entries_[i];
-    if (!key.IsWildcard() && key.Fits(participant) && (!found || process == name)) found = i;
+    const Entry& entry = entries_[i];
+    if (!entry.key.IsWildcard() && entry.key.Fits(participant) && (!found || entry.process == name)) found = i;
   }
   return found;
 }
 
 std::optional<std::size_t> Peers::FindWriter(const Topic& topic, const GuidPrefix& writer) const {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    const auto& [process, key, claimant] = entries_[i];
+    const Entry& entry = entries_[i];
     // Only the experiment says which participant is the orchestrator, to processes that it has not started.
-    const bool fits = key.Fits(writer) && (!key.IsWildcard() || topic.kind == TopicKind::kExperiment);
-    if (fits && MayWrite(process, topic)) return i;
+    const bool fits = entry.key.Fits(writer) && (!entry.key.IsWildcard() || topic.kind == TopicKind::kExperiment);
+    if (fits && MayWrite(entry.process, topic)) return i;
   }
   return {};
+}
+
+void Peers::Await(const std::string& process, const ProcessKey& key) {
+  const std::lock_guard lock(mutex_);
+  Add(process, key, /*free=*/key);
+}
+
+void Peers::Take(Entry& entry, const GuidPrefix& participant) {
+  if (entry.free && !entry.key.IsExact()) {
+    entry.claimant = participant;
+    ++version_;
+  }
+  entry.key = ProcessKey::Of(participant);
 }
 
 std::string Peers::Claim(const GuidPrefix& participant, const std::string& name) {
   const std::lock_guard lock(mutex_);
   if (const auto found = Find(participant, name)) {
     Entry& entry = entries_[*found];
-    if (entry.process == name) entry.key = ProcessKey::Of(participant);
+    if (entry.process == name) Take(entry, participant);
     return entry.process;
   }
   for (Entry& entry : entries_)
     if (entry.process == name && entry.key.IsNobody()) {
-      entry.key = ProcessKey::Of(participant);
-      entry.claimant = participant;
-      ++version_;
+      Take(entry, participant);
       return name;
     }
-  return {};
+  return ProvenProcessOf(participant);
 }
 
 void Peers::Leave(const GuidPrefix& participant) {
   const std::lock_guard lock(mutex_);
   for (Entry& entry : entries_)
-    if (entry.claimant == participant) {
-      entry = {.process = entry.process, .key = {}};
+    if (entry.free && entry.claimant == participant) {
+      entry.key = *entry.free;
+      entry.claimant = {};
       ++version_;
     }
 }
@@ -102,7 +126,7 @@ void Peers::Leave(const GuidPrefix& participant) {
 std::string Peers::ProcessOf(const GuidPrefix& participant) const {
   const std::lock_guard lock(mutex_);
   const auto found = Find(participant);
-  return found ? entries_[*found].process : std::string();
+  return found ? entries_[*found].process : ProvenProcessOf(participant);
 }
 
 std::string Peers::WriterOf(const Topic& topic, const GuidPrefix& writer) const {

@@ -36,17 +36,21 @@ class Peers {
   /// Notes that there is such a process, and what is known of it. An exact key replaces what was known before, and so
   /// does the key of another process id: a fresh process has taken the place. Another key does not.
   void Know(const std::string& process, const ProcessKey& key);
+  /// Notes that there is a process that somebody starts by hand. The first participant that has its name takes its
+  /// place, if it fits `key`, or that is of nobody; when it leaves, the place is free again.
+  void Await(const std::string& process, const ProcessKey& key);
   /// All places, for other processes.
   std::vector<Place> Places() const;
-  /// A number that grows whenever a place is taken by name or by a fresh process, or becomes free: other processes must
-  /// then be told.
+  /// A number that grows whenever a place is taken by a process that was started by hand or by a fresh one, or becomes
+  /// free: other processes must then be told.
   std::uint64_t version() const;
 
   /// Call it when a participant of this name has been discovered. If the participant fits, it takes the place of its
   /// name: that of a process with its process id, or a place that is free. Returns the name of its process; empty: it
   /// is not of the run.
   std::string Claim(const GuidPrefix& participant, const std::string& name);
-  /// Call it when a participant has left. If it had taken a place by nothing but its name, the place is free again.
+  /// Call it when a participant has left. If it had taken the place of a process that is started by hand, the place is
+  /// free again.
   void Leave(const GuidPrefix& participant);
   /// Name of the process of this participant; empty: it is not of the run.
   std::string ProcessOf(const GuidPrefix& participant) const;
@@ -67,12 +71,20 @@ class Peers {
   struct Entry {
     std::string process;
     ProcessKey key;
-    GuidPrefix claimant = {};  // the participant that took the place by its name alone
+    /// With network.security, fits all participants that prove by their certificate that they are of the process: its
+    /// voice is the first of them alone, but what the others do is its doing, too.
+    std::optional<ProcessKey> proof = {};
+    std::optional<ProcessKey> free = {};  // its key while it is free, of a process that is started by hand
+    GuidPrefix claimant = {};             // the participant that took the place of such a process
   };
+  void Add(const std::string& process, const ProcessKey& key, std::optional<ProcessKey> free);
+  /// The process of a participant by its certificate alone; empty: none.
+  std::string ProvenProcessOf(const GuidPrefix& participant) const;
   /// Index of the entry whose key fits, of the process `name` if several do; nothing: no key fits.
   std::optional<std::size_t> Find(const GuidPrefix& participant, std::string_view name = {}) const;
   /// The same among the processes that may write `topic`.
   std::optional<std::size_t> FindWriter(const Topic& topic, const GuidPrefix& writer) const;
+  void Take(Entry& entry, const GuidPrefix& participant);
 
   mutable std::mutex mutex_;
   std::vector<Entry> entries_;

@@ -4,13 +4,18 @@
 
 #include <cstdint>
 #include <fastdds/rtps/common/GuidPrefix_t.hpp>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace mascot {
 
 /// The first eight bytes of the GUID prefixes of a process's participants, as far as they are known. Fast DDS puts into
 /// them, two bytes each: its own vendor id, the host, the low bits of the process id, a number that the process has
-/// drawn. They are the same for all participants of a process; the last four bytes of the prefix differ.
+/// drawn. They are the same for all participants of a process; the last four bytes of the prefix differ. With
+/// network.security, the first six bytes tell the subject of the participant's certificate, which its peers have
+/// verified, and the others are its own.
 class ProcessKey {
  public:
   using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
@@ -21,6 +26,9 @@ class ProcessKey {
   static ProcessKey Anybody() { return {0, 0}; }
   /// Fits a process that this host has started, of which only the process id is known until it joins the domain.
   static ProcessKey WithPid(pid_t pid);
+  /// Fits every participant that has authenticated itself by a certificate whose subject has this SHA-256 digest, of 32
+  /// bytes.
+  static ProcessKey WithSubject(std::span<const std::uint8_t> digest);
   /// Fits exactly the process of this participant.
   static ProcessKey Of(const GuidPrefix& participant);
   /// The key with these bits() and mask(), which another process has sent.
@@ -31,10 +39,15 @@ class ProcessKey {
   bool Fits(const ProcessKey& exact) const { return (exact.bits_ & mask_) == bits_; }
   /// Whether no other process can fit.
   bool IsExact() const { return mask_ == ~std::uint64_t{0}; }
-  /// Whether it is as WithPid() makes it.
-  bool IsOfPid() const { return mask_ != 0 && !IsExact(); }
+  /// Whether it is as WithPid() or WithSubject() make it.
+  bool IsOfAStart() const { return mask_ != 0 && !IsExact(); }
+  /// Whether it is as WithSubject() makes it.
+  bool IsOfSubject() const;
   bool IsNobody() const { return mask_ == 0 && bits_ != 0; }
   bool IsWildcard() const { return mask_ == 0 && bits_ == 0; }
+  /// A key that WithSubject() has made, as twelve hexadecimal digits, and back; nullopt: it is something else.
+  std::string ToHex() const;
+  static std::optional<ProcessKey> FromHex(std::string_view digits);
   std::uint64_t bits() const { return bits_; }
   std::uint64_t mask() const { return mask_; }
 

@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
+#include <functional>
 #include <iostream>
 #include <mutex>
 #include <optional>
@@ -107,6 +109,14 @@ int AwaitParticipants(const Domain& domain, int awaited, StopSignal& stop) {
   return 0;
 }
 
+/// The processes of the run that an experiment names.
+std::vector<Peers::Place> PlacesOf(const mascot_msgs::msg::Experiment& experiment) {
+  std::vector<Peers::Place> places;
+  for (const auto& process : experiment.processes())
+    places.emplace_back(process.name().to_string(), ProcessKey(process.bits(), process.mask()));
+  return places;
+}
+
 /// Listens to the experiment of a domain under a name that no process of a run has, which disturbs nobody.
 class PlacesOfTheRun {
  public:
@@ -137,9 +147,7 @@ class PlacesOfTheRun {
   }
   void Take(const mascot_msgs::msg::Experiment& experiment) {
     const std::lock_guard lock(mutex_);
-    places_.emplace();
-    for (const auto& process : experiment.processes())
-      places_->emplace_back(process.name().to_string(), ProcessKey(process.bits(), process.mask()));
+    places_ = PlacesOf(experiment);
     stop_.Wake();
   }
 
@@ -150,14 +158,16 @@ class PlacesOfTheRun {
   Reader<ExperimentType> reader_;
 };
 
-/// Why a run with these processes does not wait for this agent, which was started by hand; empty: it does.
-std::string WhyNotAwaited(const ProcessArgs& args, const std::vector<Peers::Place>& places) {
+/// Why a run with these processes does not wait for this agent, which was started by hand; empty: it does. `is_free`
+/// says whether the key of a place leaves it to this process.
+template <class IsFree>
+std::string WhyNotAwaited(const ProcessArgs& args, const std::vector<Peers::Place>& places, const IsFree& is_free) {
   std::string awaited;
   bool is_there = false;
   for (const auto& [process, key] : places) {
     is_there = is_there || process == args.options.name;
     const auto agents = AgentsOf(process);
-    if (!agents || !key.IsNobody()) continue;
+    if (!agents || !is_free(key)) continue;
     if (process == args.options.name) return "";
     awaited += (awaited.empty() ? "" : ", ") + IdsText(*agents);
   }
@@ -174,7 +184,7 @@ std::optional<int> RefuseIfNotAwaited(const ProcessArgs& args, StopSignal& stop)
   int code = 1;
   std::string error;
   try {
-    error = WhyNotAwaited(args, run.Await(std::chrono::seconds(args.wait_s)));
+    error = WhyNotAwaited(args, run.Await(std::chrono::seconds(args.wait_s)), std::mem_fn(&ProcessKey::IsNobody));
     if (error.empty()) return std::nullopt;
     code = 2;
   } catch (const Ended& ended) {
@@ -187,11 +197,47 @@ std::optional<int> RefuseIfNotAwaited(const ProcessArgs& args, StopSignal& stop)
   return code;
 }
 
+/// The run does not wait for an agent that was started by hand.
+class NotAwaited : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws NotAwaited if the run does not wait for this agent: its credentials serve one process at a time. Nobody takes
+/// for the agent's what a second one says.
+void RequirePlace(const ProcessArgs& args, const Domain& domain, const mascot_msgs::msg::Experiment& experiment) {
+  const std::string why = WhyNotAwaited(args, PlacesOf(experiment), [&](const ProcessKey& key) {
+    return !key.IsExact() || key.Fits(domain.guid_prefix());
+  });
+  if (!why.empty()) throw NotAwaited(why);
+}
+
+/// What is known of the orchestrator before it has said anything.
+ProcessKey KeyOfOrchestrator(const ProcessArgs& args) {
+  if (args.options.credentials != nullptr) return args.options.credentials->orchestrator;
+  const int orchestrator = args.orchestrator != 0 ? args.orchestrator : args.parent;
+  return orchestrator != 0 ? ProcessKey::WithPid(orchestrator) : ProcessKey::Anybody();
+}
+
+/// Reads the credentials. Whoever has started this process for a run has made the file for it alone: it goes.
+void TakeCredentials(ProcessArgs& args) {
+  if (args.credentials_file.empty()) return;
+  auto credentials = std::make_shared<const Credentials>(ReadCredentials(args.credentials_file));
+  if (args.parent != 0) std::filesystem::remove(args.credentials_file);
+  if (credentials->process != args.options.name)
+    throw std::invalid_argument("--credentials: expected those of " + args.options.name + ", got those of " +
+                                credentials->process);
+  args.options.credentials = std::move(credentials);
+  if (!args.options.peers.empty()) return;
+  // Fast DDS may forget a handshake with a participant of which it hears by two ways at once, as by multicast.
+  args.options.peers = {kNumberOfOrchestrator, kNumberOfServer};
+  args.awaited = 2;
+}
+
 /// Joins the domain and runs its role. Publishes a failure before it leaves. Returns the exit code.
 int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role) {
   Peers peers;
-  const int orchestrator = args.orchestrator != 0 ? args.orchestrator : args.parent;
-  peers.Know(kOrchestrator, orchestrator != 0 ? ProcessKey::WithPid(orchestrator) : ProcessKey::Anybody());
+  peers.Know(kOrchestrator, KeyOfOrchestrator(args));
   Domain domain(
       args.options, [&stop] { stop.Wake(); }, &peers);
   const Refusals refusals(peers);
@@ -202,10 +248,14 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
   int code = 1;
   try {
     experiment = lifecycle.AwaitExperiment(std::chrono::seconds(args.wait_s), args.from_tick);
+    if (args.IsByHand() && args.options.credentials != nullptr) RequirePlace(args, domain, *experiment);
     role = make_role(domain, lifecycle, *experiment);
     role->Run();
   } catch (const Ended& ended) {
     code = ended.signal() == 0 ? 0 : 128 + ended.signal();
+  } catch (const NotAwaited& refusal) {
+    std::cerr << "error: " << refusal.what() << std::endl;
+    code = 2;
   } catch (const std::exception& failure) {
     Leave(args, kTimeToReport + kTimeToLeave, code);
     std::cerr << "error: " << InWords(failure) << std::endl;
@@ -224,6 +274,9 @@ void ProcessArgs::AddTo(CLI::App& app) {
            "--id", [this](const std::string& text) { agents = ParseIds(text); },
            "This agent's number, 1..N, or those of all agents that share this process: 1-50")
         ->required();
+  if (is_agent)
+    app.add_flag("--no-code", no_code,
+                 "Refuse laws of users: fly no code that comes with the experiment, or that it names");
   app.add_option("--domain", options.domain, "DDS domain of the run; `orchestrator up` prints it")
       ->required()
       ->check(CLI::Range(0, 232));
@@ -239,12 +292,16 @@ void ProcessArgs::AddTo(CLI::App& app) {
                  "Numbers of the processes to announce this one to (default: by multicast, to all)")
       ->delimiter(',')
       ->check(CLI::Range(0, 119));
+  app.add_option("--peers-at", options.peers_at, "IPv4 address of the host of --peers (default: 127.0.0.1)");
   app.add_option("--awaits", awaited, "How many participants this one waits for before it makes readers and writers")
       ->check(CLI::Range(0, 20000));
   app.add_option("--from-tick", from_tick, "The first tick that this process answers, after a restart")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));
   app.add_option("--parent", parent, "Process id of the program that spawned this process: end when it dies");
   app.add_option("--orchestrator", orchestrator, "Process id of the orchestrator, if it is on another host");
+  app.add_option(
+      "--credentials", credentials_file,
+      "The credentials of this process, in a run with network.security; `orchestrator up` prints where they are");
   app.add_option("--address", options.address, "IPv4 address of the interface to use (default: all)");
 }
 
@@ -270,10 +327,10 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   args.options.name = args.is_agent ? ProcessName(args.agents) : kPhysicsServer;
   if (!args.options.server.empty()) args.options.role = DiscoveryRole::kClient;
   try {
+    TakeCredentials(args);
     RequireAddresses(args.options);
     if (args.parent == 0) RequireResources({.shared_memory = SharedMemoryNeeded(args.options)});  // else it was asked
-    const bool by_hand = args.parent == 0 && args.orchestrator == 0;
-    if (by_hand && args.is_agent)
+    if (args.IsByHand() && args.options.credentials == nullptr)
       if (const auto code = RefuseIfNotAwaited(args, stop)) return *code;
     return Join(args, stop, make_role);
   } catch (const std::invalid_argument& usage) {

@@ -27,7 +27,11 @@ struct ProcessArgs {
   std::int64_t from_tick = 0;  ///< the first tick to answer: 0, or that of a restart
   int orchestrator = 0;        ///< pid of the orchestrator, if that is not the parent but on another host
   bool is_agent = false;
+  bool no_code = false;          ///< laws of users are refused
+  std::string credentials_file;  ///< empty: the run has no network.security
 
+  /// Whether somebody has started this agent by hand.
+  bool IsByHand() const { return is_agent && parent == 0 && orchestrator == 0; }
   explicit ProcessArgs(bool agent_process) : is_agent(agent_process) {}
   void AddTo(CLI::App& app);
 };

@@ -151,7 +151,8 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
     builtin.initialPeersList.push_back(NobodyInSharedMemory(options.domain));
     for (const int number : options.peers) {
       Locator_t peer;
-      IPLocator::setIPv4(peer, "127.0.0.1");
+      if (!IPLocator::setIPv4(peer, options.peers_at))
+        throw std::invalid_argument("--peers-at: expected an IPv4 address, got '" + options.peers_at + "'");
       IPLocator::setPhysicalPort(peer, DiscoveryPort(options.domain, number));
       if (number != options.number) builtin.initialPeersList.push_back(peer);
     }

@@ -4,11 +4,13 @@
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "bus/security.h"
 #include "idl/topics.h"
 
 namespace mascot {
@@ -20,6 +22,9 @@ enum class DiscoveryRole {
   kObserver,  ///< asks the discovery server, learns of all endpoints (Fast DDS: SUPER_CLIENT)
   kServer,    ///< is the discovery server
 };
+
+/// DomainOptions::number of the orchestrator and of the physics server, which others need to find.
+inline constexpr int kNumberOfOrchestrator = 117, kNumberOfServer = 118;
 
 /// How a process joins the DDS domain of a run.
 struct DomainOptions {
@@ -34,9 +39,12 @@ struct DomainOptions {
   /// Number of this participant among those of its host: it has the ports of this number, if they are free. -1: Fast
   /// DDS tries one number after the other, which takes long where there are many.
   int number = -1;
-  /// For kPeer: the numbers of the participants of this host to which this one announces itself; they answer. Empty: it
+  /// For kPeer: the numbers of the participants of a host to which this one announces itself; they answer. Empty: it
   /// announces itself by multicast, to all of the domain.
   std::vector<int> peers = {};
+  std::string peers_at = "127.0.0.1";  ///< IPv4 address of the host of `peers`
+  /// With network.security: what the process takes part with. Null: without security.
+  std::shared_ptr<const Credentials> credentials = {};
 };
 
 /// The UDP port at which the participant with this number is announced to, if it has got its ports.

@@ -60,6 +60,17 @@ inline constexpr EnumNames<DeliveryMode, 3> kDeliveries({{DeliveryMode::kAuto, "
                                                          {DeliveryMode::kBundled, "bundled"},
                                                          {DeliveryMode::kTopics, "topics"}});
 
+enum class Security {
+  kOff,
+  kGraph  ///< certificates let nobody hear or say what the graph does not allow
+};
+inline constexpr EnumNames<Security, 2> kSecurities({{Security::kOff, "off"}, {Security::kGraph, "graph"}});
+/// What Security::kGraph does to the samples, besides that it allows them.
+enum class Protection { kNone, kSign, kEncrypt };
+inline constexpr EnumNames<Protection, 3> kProtections({{Protection::kNone, "none"},
+                                                        {Protection::kSign, "sign"},
+                                                        {Protection::kEncrypt, "encrypt"}});
+
 /// [control], or an agent's own control table.
 struct ControlConfig {
   double heading_rad = 0;
@@ -188,7 +199,10 @@ struct Experiment {
     int agents_per_process = 1;
     DeliveryMode delivery = DeliveryMode::kAuto;
     bool ros_view = false;
+    Security security = Security::kOff;
+    Protection protection = Protection::kNone;
 
+    bool is_secure() const { return security == Security::kGraph; }
     /// Whether all that goes to a process at a tick goes in one sample, which is the faster way.
     bool is_bundled() const { return delivery != DeliveryMode::kTopics; }
   } network;

@@ -241,6 +241,15 @@ void ReadNetwork(Section& section, Experiment& experiment) {
   network.agents_per_process = static_cast<int>(section.Integer("agents_per_process"));
   network.delivery = kDeliveries.Value(section.OneOf("delivery"));
   network.ros_view = section.Boolean("ros_view");
+  network.security = kSecurities.Value(section.OneOf("security"));
+  network.protection = kProtections.Value(section.OneOf("protection"));
+  if (!network.is_secure() && network.protection != Protection::kNone)
+    section.Fail("protection", "expected \"none\" with security = \"off\", got '" +
+                                   std::string(kProtections.Name(network.protection)) + "'");
+  if (network.is_secure() && network.transport == "shm")
+    section.Fail("transport", "expected \"auto\" or \"udp\" with security = \"graph\", got 'shm'");
+  if (network.is_secure() && network.ros_view)
+    section.Fail("ros_view", "expected false with security = \"graph\": RViz2 has no certificate, got true");
   section.Done();
 }
 
@@ -358,6 +367,14 @@ std::span<const Key> ExperimentKeys() {
           "bundled")
           .Default("\"auto\""),
       key::Boolean("ros_view", "publishes `/tf` and `/scene`, for RViz2").Default("false"),
+      key::OneOf(
+          "security", kSecurities.names(),
+          "graph: certificates of DDS Security, made for the run, let no process hear or say what the graph does "
+          "not allow; see [security.md](security.md)")
+          .Default("\"off\""),
+      key::OneOf("protection", kProtections.names(),
+                 "of `security = \"graph\"`: whether samples are also signed, or encrypted as well")
+          .Default("\"none\""),
   };
   static const Key keys[] = {
       key::Integer("format", 1, kFormat, "version of the file's format; the config.toml of a run has it").Default("1"),

@@ -22,13 +22,19 @@ int Place(const mascot::Experiment& experiment, mascot::AgentRange agents) {
   return 1 + static_cast<int>(std::ranges::find(processes, agents) - processes.begin());
 }
 
-/// Reads the experiment. Throws std::runtime_error if it has fewer agents than this process has.
-mascot::Experiment ReadFor(mascot::AgentRange agents, const mascot_msgs::msg::Experiment& message) {
+/// Reads the experiment. Throws std::runtime_error if it has fewer agents than this process has, or if one of these
+/// flies a law of a user and `no_code` is set.
+mascot::Experiment ReadFor(mascot::AgentRange agents, bool no_code, const mascot_msgs::msg::Experiment& message) {
   const auto document = mascot::Section::FromText(message.toml(), message.name());
-  mascot::Experiment experiment = mascot::LoadExperiment(document, message.name(), /*checked=*/true);
+  mascot::Experiment experiment = mascot::LoadExperiment(
+      document, message.name(), /*checked=*/true, no_code ? mascot::UserCode::kNeverRuns : mascot::UserCode::kMayRun);
   if (agents.last > experiment.size())
     throw std::runtime_error("--id " + std::to_string(agents.last) + ": the experiment has only agents 1 to " +
                              std::to_string(experiment.size()));
+  for (int id = agents.first; no_code && id <= agents.last; ++id)
+    if (const mascot::LawEntry& law = mascot::EntryOf(experiment.agent(id).law); law.is_of_user)
+      throw std::runtime_error("--no-code: agent " + std::to_string(id) + " flies law '" + std::string(law.name) +
+                               "', which runs code of the experiment's author");
   return experiment;
 }
 
@@ -44,9 +50,9 @@ void SayWhoIsHeard(const mascot::Experiment& experiment, mascot::AgentRange agen
 class AgentRole : public mascot::Role {
  public:
   AgentRole(mascot::Domain& domain, mascot::Lifecycle& lifecycle, const mascot_msgs::msg::Experiment& message,
-            mascot::AgentRange agents)
+            mascot::AgentRange agents, bool no_code)
       : agents_(agents),
-        experiment_(ReadFor(agents, message)),
+        experiment_(ReadFor(agents, no_code, message)),
         node_(domain, lifecycle, experiment_, agents, message.events()) {}
 
   void Run() override {
@@ -76,6 +82,7 @@ int main(int argc, char** argv) {
   mascot::ProcessArgs args(/*agent_process=*/true);
   return mascot::ProcessMain(app, static_cast<int>(words.size()), arguments.data(), args, stop,
                              [&args](auto& domain, auto& lifecycle, const auto& message) {
-                               return std::make_unique<AgentRole>(domain, lifecycle, message, args.agents);
+                               return std::make_unique<AgentRole>(domain, lifecycle, message, args.agents,
+                                                                  args.no_code);
                              });
 }

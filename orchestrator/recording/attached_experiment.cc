@@ -12,6 +12,7 @@ namespace {
 std::vector<Override> UsualDelivery() {
   return {{.key = "network.domain", .value = "\"auto\""},   {.key = "network.agents_per_process", .value = "1"},
           {.key = "network.delivery", .value = "\"auto\""}, {.key = "network.ros_view", .value = "false"},
+          {.key = "network.security", .value = "\"off\""},  {.key = "network.protection", .value = "\"none\""},
           {.key = "hosts", .value = "", .removes = true},   {.key = "run.pace", .value = "", .removes = true}};
 }
 
@@ -41,8 +42,8 @@ Experiment WithEvents(const Experiment& experiment, const std::vector<Event>& by
 std::string WithoutDelivery(const Experiment& experiment) {
   const auto& network = experiment.network;
   const bool is_usual = network.domain < 0 && network.agents_per_process == 1 &&
-                        network.delivery == DeliveryMode::kAuto && !network.ros_view && !experiment.run.pace &&
-                        experiment.hosts.empty();
+                        network.delivery == DeliveryMode::kAuto && !network.ros_view && !network.is_secure() &&
+                        !experiment.run.pace && experiment.hosts.empty();
   return is_usual ? experiment.resolved : WithOverrides(experiment, UsualDelivery());
 }
 

@@ -11,8 +11,8 @@ namespace mascot {
 // The experiment that is attached to a recording, as TOML text (Experiment::resolved), and what is left out of it so
 // that equal runs have equal recordings.
 
-/// The resolved experiment as attached: with the default domain, processes, delivery and pace, without hosts and
-/// without a view for RViz2. Runs that differ only in these have the same recording.
+/// The resolved experiment as attached: with the default domain, processes, delivery and pace, without hosts, security
+/// and a view for RViz2. Runs that differ only in these have the same recording.
 std::string WithoutDelivery(const Experiment& experiment);
 /// The same without events.
 std::string WithoutEvents(const Experiment& experiment);

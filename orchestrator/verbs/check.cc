@@ -44,6 +44,36 @@ Json ToJson(const GraphFacts& facts) {
           {"spanning_tree", facts.tree}};
 }
 
+/// The edges that certificates allow and that do not work at the start: the schedule brings them later.
+std::vector<Edge> AllowedForLater(const Experiment& experiment) {
+  std::vector<Edge> edges;
+  for (int id = 1; id <= experiment.graph.size(); ++id)
+    for (const Graph::Neighbour& heard : experiment.graph.HeardBy(id))
+      if (!experiment.schedule.At(0).Hears(id, heard.id)) edges.push_back({id, heard.id});
+  return edges;
+}
+
+/// null without network.security.
+Json SecurityJson(const Experiment& experiment) {
+  if (!experiment.network.is_secure()) return nullptr;
+  Json later = Json::array();
+  for (const auto& [hearer, heard] : AllowedForLater(experiment)) later.push_back({hearer, heard});
+  return {{"protection", kProtections.Name(experiment.network.protection)},
+          {"edges", experiment.graph.edges()},
+          {"edges_for_later", later}};
+}
+
+std::string SecurityText(const Experiment& experiment) {
+  constexpr std::size_t kMost = 5;
+  const std::vector<Edge> later = AllowedForLater(experiment);
+  std::string text = fmt::format("certificates allow {} edges", experiment.graph.edges());
+  if (later.empty()) return text;
+  text += fmt::format(", {} of them for later: ", later.size());
+  for (std::size_t k = 0; k < std::min(kMost, later.size()); ++k)
+    text += fmt::format("{}{} hears {}", k == 0 ? "" : ", ", later[k].first, later[k].second);
+  return later.size() > kMost ? text + fmt::format(" and {} more", later.size() - kMost) : text;
+}
+
 Json DelaysJson(const Experiment& experiment) {
   Json delays = Json::array();
   for (const DelayInEffect& delay : DelaysInEffect(experiment))
@@ -117,6 +147,7 @@ Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Predict
                {"axes", kAxes.Name(experiment.law.axes)},
                {"leader", experiment.law.leader},
                {"graph", ToJson(facts)},
+               {"security", SecurityJson(experiment)},
                {"draws", DrawsOf(experiment)},
                {"files_bytes", FilesOf(experiment).all()},
                {"delays", DelaysJson(experiment)},
@@ -230,6 +261,7 @@ int Check(ConfigArgs& args, bool json) {
   std::cout << NameOfInput(args.path) << ": valid\n";
   PrintExperiment(experiment);
   PrintGraph(facts, experiment.schedule);
+  if (experiment.network.is_secure()) PrintLine("security", SecurityText(experiment));
   for (const std::string& line : DelayLines(experiment)) PrintLine("delay in use", line);
   PrintPredictions(experiment, prediction);
   for (const LaterPhase& phase : prediction.later) {

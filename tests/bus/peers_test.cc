@@ -63,7 +63,7 @@ class PeersTest : public testing::Test {
   PeersTest() {
     peers_.Know("physics_server", ProcessKey::WithPid(100));
     peers_.Know("agent_1", ProcessKey::WithPid(101));
-    peers_.Know("agent_2", ProcessKey());
+    peers_.Await("agent_2", ProcessKey());
   }
   Peers peers_;
 };

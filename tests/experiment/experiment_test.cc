@@ -721,6 +721,21 @@ TEST(Experiment, FindsMistakesOfDifferentTablesAtOnce) {
                           "e.toml:6:5: run.spee: unknown key (did you mean \"speed\"?)"));
 }
 
+TEST(Experiment, SecurityGoesWithWhatItCanSecure) {
+  const Experiment e = Load(Config("network.security = 'graph'\nnetwork.protection = 'sign'\n"));
+  EXPECT_TRUE(e.network.is_secure());
+  EXPECT_EQ(e.network.protection, Protection::kSign);
+  EXPECT_FALSE(Load(Config("")).network.is_secure());
+  EXPECT_THAT(Mistakes(Config("network.protection = 'sign'\n")),
+              ElementsAre(HasSubstr("network.protection: expected \"none\" with security = \"off\", got 'sign'")));
+  EXPECT_THAT(
+      Mistakes(Config("network.security = 'graph'\nnetwork.transport = 'shm'\n")),
+      ElementsAre(HasSubstr("network.transport: expected \"auto\" or \"udp\" with security = \"graph\", got 'shm'")));
+  EXPECT_THAT(Mistakes(Config("network.security = 'graph'\nnetwork.ros_view = true\n")),
+              ElementsAre(HasSubstr("network.ros_view: expected false with security = \"graph\": RViz2 has no "
+                                    "certificate, got true")));
+}
+
 TEST(Experiment, KnowsOnlyKeysThatDoSomething) {
   for (const std::string later : {"run.deterministic = true", "network.compression = 'zstd'", "law.file = 'x.py'"})
     EXPECT_THAT(Mistakes(Config(later + "\n")), ElementsAre(HasSubstr("unknown key"))) << later;

@@ -3,11 +3,13 @@
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <string>
 
@@ -35,6 +37,13 @@ class Anything : public dds::TopicDataType {
   bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
 };
 
+/// Says that somebody writes to us.
+class Matched : public dds::DataReaderListener {
+  void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus&) override {
+    std::cerr << "eavesdropper: hears\n";
+  }
+};
+
 /// The DDS domain of this process: the number after --domain on its command line; -1: it has none.
 int OwnDomain() {
   std::ifstream file("/proc/self/cmdline");
@@ -54,7 +63,10 @@ void Listen(int domain, const std::string& name, const std::string& type_name) {
   type.register_type(participant);
   auto* topic = participant->create_topic("rt/" + name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
   auto* subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
-  if (topic != nullptr && subscriber != nullptr) subscriber->create_datareader(topic, dds::DATAREADER_QOS_DEFAULT);
+  if (topic == nullptr || subscriber == nullptr) return;
+  static Matched matched;
+  if (subscriber->create_datareader(topic, dds::DATAREADER_QOS_DEFAULT, &matched) != nullptr)
+    std::cerr << "eavesdropper: reads /" + name + "\n";
 }
 
 class Eavesdropper final : public mascot::Law {

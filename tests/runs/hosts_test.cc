@@ -88,6 +88,9 @@ class Hosts : public testing::Test {
     if (const auto at = said.find("THIS-HOST:"); at != std::string::npos)
       agent_words.insert(agent_words.end(),
                          {"--discovery", "10.77.0.1:" + std::to_string(std::stoi(said.substr(at + 10)))});
+    if (const auto at = said.find("--credentials "); at != std::string::npos)
+      agent_words.insert(agent_words.end(), {"--peers-at", "10.77.0.1", "--credentials",
+                                             said.substr(at + 14, said.find_first_of(" \n", at + 14) - at - 14)});
     Running agent("ip", hosts_.There(agent_words), folder_.File("agent"));
     if (meanwhile) meanwhile();
     EXPECT_EQ(up.Wait(), 0) << up.err() << agent.err() << ReadFile(folder_.File("run/logs/orchestrator.log"));
@@ -146,6 +149,10 @@ Difference FirstDifference(const std::string& a, const std::string& b) {
 
 TEST_F(Hosts, AnAgentOnAnotherHostJoinsAndTheRecordingIsTheSame) {
   FlyTogether(Config("leaderless"), {"--duration-s", "1"}, 2);
+}
+
+TEST_F(Hosts, AnAgentOnAnotherHostJoinsWithItsCredentials) {
+  FlyTogether(Config("event_triggered"), {"--duration-s", "1", "--set", "network.security=graph"}, 2);
 }
 
 TEST_F(Hosts, ALawInPythonTravelsToAnotherHostAsTextOrFromAFile) {

@@ -241,6 +241,15 @@ TEST_F(OnOtherHosts, ThirtyAgentsLeaveTheRecordingOfOneHost) {
   ExpectNothingIsLeft();
 }
 
+TEST_F(OnOtherHosts, GetTheirCredentialsOverTheirConnections) {
+  Connect();
+  const std::string config = Experiment(30, 1, laboratory_->Tables({"1-10", "11-15,21", "16-20,22-26"}));
+  const auto up = Fly(config, {"--set", "network.security=graph", "--set", "network.protection=encrypt"});
+  ASSERT_EQ(up->Wait(), 0) << up->err();
+  ExpectTheSameBytes();
+  ExpectNothingIsLeft();
+}
+
 TEST_F(OnOtherHosts, MayAllBeThisOne) {
   const std::string config = Experiment(4, 0.5,
                                         "[[hosts]]\nname = 'lab1'\nagents = '1-2'\nlaunch = ['env']\naddress = "

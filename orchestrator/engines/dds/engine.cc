@@ -1,6 +1,7 @@
 #include "orchestrator/engines/dds/engine.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -24,6 +25,7 @@
 #include "bus/shared_memory.h"
 #include "experiment/processes.h"
 #include "orchestrator/engines/dds/bounded_call.h"
+#include "orchestrator/engines/dds/credentials.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/dds/hosts/launcher.h"
 #include "orchestrator/engines/dds/machine/domain_lock.h"
@@ -51,7 +53,8 @@ constexpr int kMaxPeers = 20;
 constexpr int kMaxNumbered = 110;
 /// DomainOptions::number: agents have the numbers from kFirstAgents on. Programs of others take the lowest that are
 /// free: the two by which a star is found have the highest.
-constexpr int kDiscoveryNumber = 2, kFirstAgents = 3, kOwnNumber = 117, kServersNumber = 118;
+constexpr int kDiscoveryNumber = 2, kFirstAgents = 3, kOwnNumber = kNumberOfOrchestrator,
+              kServersNumber = kNumberOfServer;
 /// How long children may take to exit by themselves at the end; longer as long as other hosts tell what theirs printed.
 constexpr auto kExitGrace = 5s, kLastWords = 60s;
 /// File descriptors of the orchestrator: with viewers; and for each process of the run (2 were counted).
@@ -89,7 +92,15 @@ class DdsRun {
   int ProcessesOn(const std::string& host) const;
   std::vector<std::string> ArgumentsOf(int participants) const;
   std::vector<std::string> ArgumentsOf(AgentRange agents) const;
-  HostJob JobOf(const HostConfig& host, const std::string& our_address) const;
+  std::vector<std::string> CredentialsFor(const std::string& process);
+  bool MayBeStar() const;
+  bool NeedsServer() const;
+  int RankOf(const std::string& process) const;
+  bool HaveWords(AgentRange one, AgentRange other) const;
+  std::ptrdiff_t MatesOf(AgentRange agents) const;
+  std::vector<int> PeersOf(const std::string& process) const;
+  ProcessKey KeyOf(const std::string& process, pid_t pid) const;
+  HostJob JobOf(const HostConfig& host, const std::string& our_address);
   std::string HostOf(const std::string& process) const;
   std::string PlacedName(const std::string& process) const;
   RunPhases::Rules Rules();
@@ -154,14 +165,17 @@ class DdsRun {
   bool is_asked_ = false;             // it is that of the order that run_requests_ has now
 
   const std::vector<AgentRange> processes_;
-  /// Every process announces itself to this one and the physics server only: others have nothing to tell each other.
+  /// Every process announces itself to this one and the physics server only: others have nothing to tell each other,
+  /// but where messages have topics of their own.
   bool is_star_;
   bool with_server_;  // a discovery server
   const RunFolder& folder_;
   std::optional<DomainLock> lock_;
   std::optional<Janitor> janitor_;
-  std::pair<std::string, std::string> last_words_;  // a file, and what it gets if we are killed
-  bool joins_ = false;                              // this process has begun to join the domain
+  std::optional<RunCredentials> credentials_;           // with network.security
+  std::shared_ptr<const Credentials> own_credentials_;  // of the orchestrator
+  std::pair<std::string, std::string> last_words_;      // a file, and what it gets if we are killed
+  bool joins_ = false;                                  // this process has begun to join the domain
   bool library_hangs_ = false;
   ChildLogs logs_;
   Children children_;
@@ -187,9 +201,8 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
       external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
       reaches_others_(external_ || !std::ranges::all_of(experiment.hosts, &HostConfig::is_here)),
       processes_(AgentProcesses(experiment)),
-      is_star_(experiment.network.is_bundled() && experiment.hosts.empty() && !external_ &&
-               experiment.network.transport != "shm" && std::ssize(processes_) <= kMaxNumbered),
-      with_server_(!is_star_ && (std::ssize(processes_) + 2 > kMaxPeers || !experiment.hosts.empty())),
+      is_star_(MayBeStar()),
+      with_server_(!is_star_ && NeedsServer()),
       folder_(folder),
       logs_([this](const std::string& process,
                    const std::string& line) { console_.ChildLine(PlacedName(process), line); },
@@ -221,6 +234,11 @@ void DdsRun::Join() {
     throw std::runtime_error(
         "network.delivery: expected \"bundled\" or \"auto\" in a run over DDS in which agents start "
         "afresh, got \"topics\"");
+  const bool has_words = std::ranges::any_of(experiment_.agents, &AgentConfig::sends_messages);
+  if (experiment_.network.is_secure() && !experiment_.network.is_bundled() && reaches_others_ && has_words)
+    throw std::runtime_error(
+        "network.delivery: expected \"bundled\" or \"auto\" with security = \"graph\", where agents that send messages "
+        "are on other hosts or started by hand, got \"topics\"");
   lock_.emplace(experiment_.network.domain);
   if (run_requests_ != nullptr) run_requests_->SetDomain(lock_->domain());
   LookAtPorts();
@@ -231,6 +249,10 @@ void DdsRun::Join() {
                     .descriptors = kOwnDescriptors + kDescriptorsPerProcess * static_cast<int>(processes_.size())});
   janitor_.emplace(*lock_);
   if (!last_words_.first.empty()) janitor_->LeaveWords(last_words_.first, last_words_.second);
+  if (experiment_.network.is_secure()) {
+    credentials_.emplace(experiment_, lock_->domain());
+    own_credentials_ = credentials_->Own();
+  }
   children_.Share(janitor_->lifeline());
   for (const int descriptor : lock_->descriptors()) children_.Share(descriptor);
   Spawn();
@@ -250,21 +272,41 @@ void DdsRun::Join() {
   if (ros_ != nullptr) ShowToRos();
 }
 
-/// Waits until all processes are discovered, at most kTimeToDiscover; not for those of which one has ended.
+/// Waits until all processes of this host are discovered, at most kTimeToDiscover; not for those of which one has
+/// ended.
 void DdsRun::AwaitParticipants() {
   const auto deadline = WallClock::now() + kTimeToDiscover;
-  while (domain_->discovered() < 1 + std::ssize(processes_) && phases_.in_order() && WallClock::now() < deadline) {
+  while (domain_->discovered() < 1 + ProcessesOn("") && phases_.in_order() && WallClock::now() < deadline) {
     OnSignal(stop_.Within(deadline - WallClock::now()));
     Reap();
   }
 }
 
+/// With network.security, processes find each other without multicast wherever they are, and in the order of their
+/// ranks (kMaxRank).
+bool DdsRun::MayBeStar() const {
+  const bool finds_all = experiment_.network.is_bundled() && experiment_.hosts.empty() && !external_;
+  return (finds_all || experiment_.network.is_secure()) && experiment_.network.transport != "shm" &&
+         ProcessesOn("") <= kMaxNumbered;
+}
+
+bool DdsRun::NeedsServer() const {
+  return !experiment_.network.is_secure() && (std::ssize(processes_) + 2 > kMaxPeers || !experiment_.hosts.empty());
+}
+
 /// Other DDS programs in the domain, if the file names it, may have the ports on which a star relies.
 void DdsRun::LookAtPorts() {
   if (!is_star_) return;
-  for (const int number : {kOwnNumber, kServersNumber})
-    if (IsUdpPortInUse(DiscoveryPort(lock_->domain(), number))) is_star_ = false;
-  if (!is_star_ && std::ssize(processes_) + 2 > kMaxPeers) with_server_ = true;
+  for (const int number : {kOwnNumber, kServersNumber}) {
+    if (!IsUdpPortInUse(DiscoveryPort(lock_->domain(), number))) continue;
+    is_star_ = false;
+    if (experiment_.network.is_secure())
+      throw std::runtime_error(
+          fmt::format("network.domain: expected a domain whose ports are free, with security = \"graph\"; in domain {} "
+                      "port {} is in use",
+                      lock_->domain(), DiscoveryPort(lock_->domain(), number)));
+  }
+  if (!is_star_ && NeedsServer()) with_server_ = true;
 }
 
 /// Shows the run to RViz2, by a participant of its own: without shared memory, which other versions of Fast DDS may not
@@ -286,11 +328,57 @@ DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const
   options.role = role;
   options.number = role == DiscoveryRole::kServer ? kDiscoveryNumber : kOwnNumber;
   options.loopback = !reaches_others_;
-  if (is_star_) options.peers = {kOwnNumber, kServersNumber};
+  if (is_star_) options.peers = PeersOf(kOrchestrator);
   options.participants = ParticipantsOfServer(experiment_);
+  options.credentials = own_credentials_;
   const std::string host = role == DiscoveryRole::kServer && reaches_others_ ? "0.0.0.0" : "127.0.0.1";
   if (with_server_) options.server = host + ":" + std::to_string(lock_->discovery_port());
   return options;
+}
+
+/// Where a process is in the order of GUIDs; see kMaxRank.
+int DdsRun::RankOf(const std::string& process) const {
+  if (process == kPhysicsServer) return kMaxRank;
+  const auto agents = std::ranges::find(processes_, AgentsOf(process).value_or(AgentRange{}));
+  if (experiment_.agent(agents->first).external) return 0;  // it announces itself to all
+  return std::max(1, kMaxRank - 2 - static_cast<int>(agents - processes_.begin()));
+}
+
+/// Whether the agents of two processes send each other messages on topics of their own.
+bool DdsRun::HaveWords(AgentRange one, AgentRange other) const {
+  if (experiment_.network.is_bundled()) return false;
+  const auto hears = [this](AgentRange listeners, AgentRange speakers) {
+    for (int id = listeners.first; id <= listeners.last; ++id)
+      for (int heard = speakers.first; heard <= speakers.last; ++heard)
+        if (experiment_.agent(heard).sends_messages && experiment_.graph.Hears(id, heard)) return true;
+    return false;
+  };
+  return hears(one, other) || hears(other, one);
+}
+
+/// How many processes of this host exchange messages with that of these agents.
+std::ptrdiff_t DdsRun::MatesOf(AgentRange agents) const {
+  return std::ranges::count_if(processes_, [&](const AgentRange& other) {
+    const AgentConfig& agent = experiment_.agent(other.first);
+    return other != agents && !agent.external && agent.host.empty() && HaveWords(agents, other);
+  });
+}
+
+/// In a star, the numbers of the processes of this host to which a process announces itself; with its own, which does
+/// not count.
+std::vector<int> DdsRun::PeersOf(const std::string& process) const {
+  if (!experiment_.network.is_secure()) return {kOwnNumber, kServersNumber};
+  if (process == kPhysicsServer || process == kOrchestrator) return {kServersNumber};
+  std::vector<int> peers{kOwnNumber, kServersNumber};
+  int number = kFirstAgents;
+  for (const AgentRange& other : processes_) {
+    if (ProcessName(other) == process) break;
+    const AgentConfig& agent = experiment_.agent(other.first);
+    if (agent.external || !agent.host.empty()) continue;
+    if (HaveWords(*AgentsOf(process), other)) peers.push_back(number);
+    ++number;
+  }
+  return peers;
 }
 
 /// The host of a process, if that is another one than this; else empty.
@@ -320,7 +408,19 @@ std::vector<std::string> DdsRun::ArgumentsOf(AgentRange agents) const {
   return arguments;
 }
 
-HostJob DdsRun::JobOf(const HostConfig& host, const std::string& our_address) const {
+/// With network.security, makes the credentials of a process that is started now. Returns its arguments for them.
+std::vector<std::string> DdsRun::CredentialsFor(const std::string& process) {
+  if (!credentials_) return {};
+  return {"--credentials", credentials_->Write(credentials_->Issue(process, RankOf(process))).string()};
+}
+
+/// Fits the participants of the newest process of this name, which has this process id. With network.security it proves
+/// by its certificate that it is this process.
+ProcessKey DdsRun::KeyOf(const std::string& process, pid_t pid) const {
+  return credentials_ ? credentials_->KeyOf(process) : ProcessKey::WithPid(pid);
+}
+
+HostJob DdsRun::JobOf(const HostConfig& host, const std::string& our_address) {
   HostJob job;
   job.domain = lock_->domain();
   job.shared_memory = SharedMemoryOf(host.name);
@@ -328,10 +428,16 @@ HostJob DdsRun::JobOf(const HostConfig& host, const std::string& our_address) co
   for (const AgentRange& agents : processes_) {
     if (experiment_.agent(agents.first).host != host.name) continue;
     std::vector<std::string> arguments = ArgumentsOf(agents);
-    arguments.insert(arguments.end(), {"--orchestrator", std::to_string(getpid()), "--discovery",
-                                       our_address + ":" + std::to_string(lock_->discovery_port())});
+    arguments.insert(arguments.end(), {"--orchestrator", std::to_string(getpid())});
+    if (with_server_)
+      arguments.insert(arguments.end(), {"--discovery", our_address + ":" + std::to_string(lock_->discovery_port())});
+    else
+      arguments.insert(arguments.end(), {"--peers-at", our_address});
     if (!host.address.empty()) arguments.insert(arguments.end(), {"--address", host.address});
-    job.processes.push_back({ProcessName(agents), arguments});
+    const std::string process = ProcessName(agents);
+    job.processes.push_back(
+        {process, arguments, credentials_ ? ToText(credentials_->Issue(process, RankOf(process))) : ""});
+    if (credentials_) peers_.Know(process, credentials_->KeyOf(process));
   }
   return job;
 }
@@ -341,36 +447,45 @@ void DdsRun::Spawn() {
   std::vector<std::string> common{"--parent", std::to_string(getpid())};
   if (options.loopback) common.push_back("--loopback");
   if (with_server_) common.insert(common.end(), {"--discovery", options.server});
-  if (is_star_)
-    common.insert(common.end(), {"--peers", std::to_string(kOwnNumber) + "," + std::to_string(kServersNumber)});
   console_.Line("DDS domain " + std::to_string(options.domain) +
                 (with_server_ ? ", discovery server " + options.server : ""));
 
-  const auto complete = [&common, this](std::vector<std::string> arguments, int number, std::ptrdiff_t awaits) {
+  const auto complete = [&common, this](const std::string& process, std::vector<std::string> arguments, int number,
+                                        std::ptrdiff_t awaits) {
     arguments.insert(arguments.end(), common.begin(), common.end());
+    const std::vector<std::string> credentials = CredentialsFor(process);
+    arguments.insert(arguments.end(), credentials.begin(), credentials.end());
     arguments.insert(arguments.end(), {"--participant", std::to_string(number)});
-    if (is_star_) arguments.insert(arguments.end(), {"--awaits", std::to_string(awaits)});
+    if (!is_star_) return arguments;
+    arguments.insert(arguments.end(), {"--peers", fmt::format("{}", fmt::join(PeersOf(process), ",")), "--awaits",
+                                       std::to_string(awaits)});
     return arguments;
   };
   const pid_t server =
       children_.Spawn(kPhysicsServer, ProgramFolder() / "physics_server",
-                      complete(ArgumentsOf(options.participants), kServersNumber, std::ssize(processes_) + 1),
+                      complete(kPhysicsServer, ArgumentsOf(options.participants), kServersNumber, ProcessesOn("") + 1),
                       folder_.Log(kPhysicsServer));
-  peers_.Know(kPhysicsServer, ProcessKey::WithPid(server));
+  peers_.Know(kPhysicsServer, KeyOf(kPhysicsServer, server));
   std::vector<Children::CopyOf> here;
   for (const AgentRange& agents : processes_) {
     const AgentConfig& agent = experiment_.agent(agents.first);
     const std::string process = ProcessName(agents);
     if (!agent.external && agent.host.empty()) {
       const int number = kFirstAgents + static_cast<int>(here.size());
-      here.push_back({process, complete(ArgumentsOf(agents), number, 2), folder_.Log(process)});
+      here.push_back(
+          {process, complete(process, ArgumentsOf(agents), number, 2 + MatesOf(agents)), folder_.Log(process)});
       continue;
     }
-    peers_.Know(process, ProcessKey());  // the first that says it is that
-    if (!agent.external) continue;
+    if (!agent.external) {
+      peers_.Await(process, ProcessKey());  // its host starts it, and says nothing of its place
+      continue;
+    }
+    const std::vector<std::string> credentials = CredentialsFor(process);
+    peers_.Await(process, credentials_ ? credentials_->KeyOf(process) : ProcessKey());
     by_hand_[process] = "agent --id " + IdsText(agents) + " --domain " + std::to_string(options.domain) +
                         (options.transport == DomainOptions().transport ? "" : " --transport " + options.transport) +
-                        (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : "");
+                        (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : "") +
+                        (credentials.empty() ? "" : " --credentials " + credentials.back());
     console_.Line("waiting for: " + by_hand_[process]);
   }
   for (const Children::CopyOf& copy : here) arguments_[copy.process] = copy.arguments;
@@ -380,7 +495,7 @@ void DdsRun::Spawn() {
                                                                 OnSignal(stop_.Within(0ms));
                                                                 return phases_.in_order();
                                                               }});
-  for (std::size_t k = 0; k < ids.size(); ++k) peers_.Know(here[k].process, ProcessKey::WithPid(ids[k]));
+  for (std::size_t k = 0; k < ids.size(); ++k) peers_.Know(here[k].process, KeyOf(here[k].process, ids[k]));
   if (experiment_.hosts.empty() || !phases_.in_order()) return;
   launcher_.emplace(
       experiment_, folder_,
@@ -598,10 +713,13 @@ void DdsRun::StartAfresh(AgentRange agents, std::int64_t tick) {
     *std::next(std::ranges::find(arguments, "--transport")) = "udp";
   number_is_used_ = number_is_used_ || next_number_ + 1 == kOwnNumber;
   next_number_ = next_number_ + 1 < kOwnNumber ? next_number_ + 1 : kFirstAgents;
+  if (credentials_)
+    *std::next(std::ranges::find(arguments, "--credentials")) =
+        credentials_->Write(credentials_->Issue(process, RankOf(process))).string();
   arguments.insert(arguments.end(), {"--from-tick", std::to_string(tick)});
   const pid_t pid = children_.Spawn(process, ProgramFolder() / "agent", arguments,
                                     folder_.Log(process + "_from_tick_" + std::to_string(tick)));
-  peers_.Know(process, ProcessKey::WithPid(pid));
+  peers_.Know(process, KeyOf(process, pid));
   console_.Line(fmt::format("{} starts afresh at {} s", process, ShortestFloat(experiment_.time_s(tick))));
 }
 

@@ -11,61 +11,13 @@
 
 #include "base/utf8.h"
 #include "experiment/processes.h"
+#include "orchestrator/engines/dds/rights.h"
 
 namespace mascot {
 namespace {
 
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::dds::DomainParticipant;
-
-/// Whether one of `agents` may hear agent `other`.
-bool MayHear(const Experiment& experiment, AgentRange agents, int other) {
-  for (int id = agents.first; id <= agents.last; ++id) {
-    const auto& heard = experiment.graph.HeardBy(id);
-    if (std::ranges::find(heard, other, &Graph::Neighbour::id) != heard.end()) return true;
-  }
-  return false;
-}
-
-/// Whether the process of `agents` may have a reader (`reads`) or writer on `topic`.
-bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic, bool reads) {
-  const bool own = agents.Holds(topic.agent);
-  const bool bundled = experiment.network.is_bundled();
-  switch (topic.kind) {
-    case TopicKind::kAnswers:
-      return !reads && bundled && topic.agents() == agents;
-    case TopicKind::kBundle:
-      return reads && bundled && topic.agents() == agents;
-    case TopicKind::kState:
-      return reads && !bundled && (own || MayHear(experiment, agents, topic.agent));
-    case TopicKind::kCommand:
-      return !reads && !bundled && own;
-    case TopicKind::kMessage:
-      return !bundled && (reads ? MayHear(experiment, agents, topic.agent) : own) &&
-             experiment.agent(topic.agent).sends_messages;
-    case TopicKind::kClock:
-      return reads && !bundled;
-    case TopicKind::kEvent:
-    case TopicKind::kExperiment:
-      return reads;
-    case TopicKind::kRequest:
-      return true;
-    case TopicKind::kStatus:
-      return !reads;
-    case TopicKind::kRow:
-    case TopicKind::kOdom:
-    case TopicKind::kScene:
-    case TopicKind::kTf:  // all agents are on them
-      return false;
-  }
-  return false;
-}
-
-/// Whether a run of this experiment has such a topic.
-bool IsOfTheRun(const Experiment& experiment, const Topic& topic) {
-  const TopicTraits& traits = topic.traits();
-  return traits.is_on_wire && (experiment.network.ros_view || !traits.is_for_ros);
-}
 
 /// The name of the process that may write `topic`, as error messages say it.
 std::string RightfulWriter(const Experiment& experiment, const Topic& topic) {

@@ -317,6 +317,21 @@ TEST(Check, SaysThatTopicsAreSlower) {
     EXPECT_THAT(checked(delivery), ::testing::Not(HasSubstr("network.delivery")));
 }
 
+TEST(Check, SaysWhichEdgesCertificatesAllowForLater) {
+  ScratchFolder folder;
+  const std::string file = folder.File("a.toml");
+  WriteFile(file,
+            "run.duration_s = 5\nagents.count = 3\nnetwork.security = 'graph'\n[graph]\nedges = [[1, 2]]\n"
+            "[[graph.schedule]]\nat_s = 1.0\nedges = [[1, 2], [2, 3], [3, 1]]\n");
+  EXPECT_THAT(Printed(SetUpCheck, {file}),
+              HasSubstr("security       certificates allow 3 edges, 2 of them for later: 2 hears 3, 3 hears 1\n"));
+  const auto json = nlohmann::json::parse(Printed(SetUpCheck, {file, "--json"}));
+  EXPECT_EQ(json["security"],
+            nlohmann::json::parse(R"({"protection": "none", "edges": 3, "edges_for_later": [[2, 3], [3, 1]]})"));
+  WriteFile(file, "run.duration_s = 5\nagents.count = 3\n");
+  EXPECT_TRUE(nlohmann::json::parse(Printed(SetUpCheck, {file, "--json"}))["security"].is_null());
+}
+
 TEST(Tables, LawsShowEveryLawWithEquationAndEveryParameter) {
   // Long texts are wrapped: compare them with spaces in place of line breaks.
   const auto words = [](const std::string& text) { return std::regex_replace(text, std::regex("\\s+"), " "); };

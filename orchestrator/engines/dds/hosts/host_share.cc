@@ -15,7 +15,6 @@
 #include "system/descendants.h"
 #include "system/environment.h"
 #include "system/failure.h"
-#include "system/private_folder.h"
 
 namespace mascot {
 namespace {
@@ -154,6 +153,12 @@ void HostShare::Start(const HostJob& job) {
   for (const HostProcess& process : job.processes) {
     std::vector<std::string> arguments = process.arguments;
     arguments.insert(arguments.end(), {"--parent", std::to_string(getpid())});
+    if (!process.credentials.empty()) {
+      if (!credentials_) credentials_.emplace();
+      const std::string file = process.name + ".toml";
+      credentials_->Write(file, process.credentials);
+      arguments.insert(arguments.end(), {"--credentials", (credentials_->path() / file).string()});
+    }
     const pid_t pid = children_.Spawn(process.name, ProgramFolder() / "agent", arguments, "/dev/null");
     Tell({{"kind", "started"}, {"process", process.name}, {"pid", pid}});
   }

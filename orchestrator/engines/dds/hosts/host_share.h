@@ -13,6 +13,7 @@
 #include "system/child_logs.h"
 #include "system/children.h"
 #include "system/line_pipe.h"
+#include "system/private_folder.h"
 #include "system/stop_signal.h"
 
 namespace mascot {
@@ -46,6 +47,7 @@ class HostShare {
   ChildLogs logs_;
   std::optional<DomainLock> lock_;
   std::optional<Janitor> janitor_;
+  std::optional<PrivateFolder> credentials_;  // with network.security
   Children children_;
   int domain_ = -1;
   std::chrono::duration<double> silence_{60};

@@ -12,7 +12,7 @@
 namespace mascot {
 namespace {
 
-constexpr std::size_t kLongestField = 10'000;
+constexpr std::size_t kLongestField = 10'000, kLongestCredentials = 10'000'000;
 constexpr double kMaxMemory = 1e15, kLongestSilence_s = 1e9;
 
 /// A text of a list of arguments.
@@ -25,7 +25,9 @@ std::string ArgumentFrom(const HostWords& argument) {
 HostProcess ReadProcess(const HostWords& words) {
   if (!words.is_object()) throw JsonError("expected an object as each of the \"processes\", got something else");
   OutsideFields fields(words);
-  HostProcess process{.name = fields.Text("name", kLongestField), .arguments = {}};
+  HostProcess process{.name = fields.Text("name", kLongestField),
+                      .arguments = {},
+                      .credentials = fields.Has("credentials") ? fields.Text("credentials", kLongestCredentials) : ""};
   for (const HostWords& argument : fields.List("arguments", 1000)) process.arguments.push_back(ArgumentFrom(argument));
   fields.Require();
   return process;
@@ -44,8 +46,10 @@ HostWords WordsOf(const HostJob& job) {
                   {"shared_memory", job.shared_memory},
                   {"silence_s", job.silence_s},
                   {"processes", HostWords::array()}};
-  for (const HostProcess& process : job.processes)
+  for (const HostProcess& process : job.processes) {
     words["processes"].push_back({{"name", process.name}, {"arguments", process.arguments}});
+    if (!process.credentials.empty()) words["processes"].back()["credentials"] = process.credentials;
+  }
   return words;
 }
 

@@ -29,6 +29,7 @@ std::string MachineText();
 struct HostProcess {
   std::string name;
   std::vector<std::string> arguments;
+  std::string credentials = {};  ///< as ToText() makes them; empty: without network.security
 };
 /// What a host shall do.
 struct HostJob {
