@@ -1,7 +1,5 @@
 #include "agent/faulty_link.h"
 
-#include <algorithm>
-
 #include "base/ticks.h"
 
 namespace mascot {
@@ -14,7 +12,7 @@ bool IsFalse(FaultKind kind) { return kind == FaultKind::kGarbage || kind == Fau
 FaultyLink::FaultyLink(const PartFault& fault, int rate_hz, std::uint64_t seed)
     : fault_(fault),
       rate_hz_(rate_hz),
-      period_ticks_(std::max<std::int64_t>(1, TicksRoundedUp(fault.fault.period_s, rate_hz))),
+      period_ticks_(PeriodInTicks(fault.fault.period_s, rate_hz)),
       dice_(seed, Dice::Stream::kFaultyLink, static_cast<std::uint64_t>(fault.fault.agent)) {
   if (IsFalse(fault.fault.kind)) false_data_.emplace(fault.fault.false_data, seed, fault.fault.agent);
 }

@@ -1,7 +1,5 @@
 #include "agent/faulty_sensor.h"
 
-#include <algorithm>
-
 #include "base/ticks.h"
 
 namespace mascot {
@@ -9,7 +7,7 @@ namespace mascot {
 FaultySensor::FaultySensor(const PartFault& fault, int rate_hz, std::uint64_t seed, const std::optional<Motion>& last)
     : fault_(fault),
       rate_hz_(rate_hz),
-      period_ticks_(std::max<std::int64_t>(1, TicksRoundedUp(fault.fault.period_s, rate_hz))),
+      period_ticks_(PeriodInTicks(fault.fault.period_s, rate_hz)),
       delay_ticks_(TicksRoundedUp(fault.fault.delay_s, rate_hz)),
       dice_(seed, Dice::Stream::kFaultySensor, static_cast<std::uint64_t>(fault.fault.agent)),
       last_(last),

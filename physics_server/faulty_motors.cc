@@ -58,8 +58,7 @@ double FaultyMotors::CarriedOut(std::int64_t tick, double command, Motor& motor)
     case FaultKind::kWrong:
       return fault.remaining * command;
     case FaultKind::kSlow:
-      if ((tick - motor.fault.since) % std::max<std::int64_t>(1, TicksRoundedUp(fault.period_s, rate_hz_)) == 0)
-        motor.held = command;
+      if ((tick - motor.fault.since) % PeriodInTicks(fault.period_s, rate_hz_) == 0) motor.held = command;
       return motor.held;
     case FaultKind::kDelayed:
       motor.late.push_back(command);
