@@ -8,11 +8,6 @@ namespace mascot {
 FalseData::FalseData(const FalseDataConfig& config, std::uint64_t seed, int id)
     : config_(config), dice_(seed, Dice::Stream::kFalseData, static_cast<std::uint64_t>(id)) {}
 
-bool FalseData::IsToldAt(double t_s) const {
-  constexpr double kRounding_s = 1e-9;  // times are ticks divided by the rate
-  return t_s >= config_.from_s - kRounding_s;
-}
-
 void FalseData::Tell(std::int64_t tick, double t_s, Motion& motion, std::span<double> message) const {
   Eigen::Vector3d off_W = config_.offset_m;
   if (config_.kind == FalseDataKind::kOscillating) {

@@ -20,6 +20,12 @@ struct FalseDataConfig {
   double from_s = 0;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
   double period_s = 0;  ///< period of an oscillating lie
+
+  /// Whether it is told at `t_s`, a tick divided by the rate.
+  bool IsToldAt(double t_s) const {
+    constexpr double kRounding_s = 1e-9;
+    return t_s >= from_s - kRounding_s;
+  }
 };
 
 /// The keys of `lie`.

@@ -170,6 +170,10 @@ std::vector<Event> LiveExperiment::RestartsAt(std::int64_t tick) const {
   return events;
 }
 
+std::optional<std::int64_t> LiveExperiment::NextRestart() const {
+  return restarts_.empty() ? std::nullopt : std::optional(restarts_.begin()->first);
+}
+
 std::optional<std::set<std::pair<int, int>>> LiveExperiment::CutAfter(const Event& event) const {
   if (!event.graph && event.cut.empty() && event.mend.empty()) return std::nullopt;
   const auto require = [&](const Event::Edges& edges) {

@@ -54,6 +54,8 @@ class LiveExperiment {
   /// The events that run.on_agent_loss = "restart" brings at `tick`, after those of the file and those by hand. They
   /// must be taken, too; they stand in no file.
   std::vector<Event> RestartsAt(std::int64_t tick) const;
+  /// The tick of the next of these events, as far as the events so far bring any; nullopt: none is to come.
+  std::optional<std::int64_t> NextRestart() const;
   /// How many events were taken so far.
   int count() const { return count_; }
 

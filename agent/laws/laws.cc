@@ -176,6 +176,11 @@ std::optional<LinearForm> LinearFormOf(const LawConfig& law) {
   return entry.linear != nullptr ? std::optional(entry.linear(law)) : std::nullopt;
 }
 
+std::optional<std::size_t> LiarsLeftOutBy(const LawConfig& law) {
+  const LawEntry& entry = EntryOf(law);
+  return entry.liars_left_out != nullptr ? std::optional(entry.liars_left_out(law)) : std::nullopt;
+}
+
 std::optional<PursuitForm> PursuitFormOf(const LawConfig& law) {
   const LawEntry& entry = EntryOf(law);
   return entry.pursuit != nullptr ? std::optional(entry.pursuit(law)) : std::nullopt;

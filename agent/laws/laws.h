@@ -114,6 +114,9 @@ struct LawEntry {
   /// and `heard` are as for Law::Want_W(). Null: the law uses all that it hears.
   std::vector<std::uint8_t> (*left_out)(const LawConfig& law, const Motion& self,
                                         std::span<const Heard> heard) = nullptr;
+  /// F: so many of those that an agent hears may lie, because the law leaves out as many of the farthest on either
+  /// side. Null: it believes all that it hears.
+  std::size_t (*liars_left_out)(const LawConfig& law) = nullptr;
   /// Null: the law is not linear.
   LinearForm (*linear)(const LawConfig& law) = nullptr;
   /// Null: the law is not a pursuit on a tree.
@@ -159,6 +162,8 @@ std::span<const int> HullOf(const LawConfig& law);
 /// The region that agents with this law divide: Drawing::cells; empty: none. Valid as long as `law`.
 std::span<const Eigen::Vector2d> RegionOf(const LawConfig& law);
 std::optional<LinearForm> LinearFormOf(const LawConfig& law);
+/// LawEntry::liars_left_out; nullopt: the law believes all that it hears.
+std::optional<std::size_t> LiarsLeftOutBy(const LawConfig& law);
 std::optional<PursuitForm> PursuitFormOf(const LawConfig& law);
 
 /// Makes the law of agent `id`. The experiment must outlive it. Throws std::logic_error if it is a user's, and the

@@ -18,9 +18,12 @@
 #include "orchestrator/report/json.h"
 #include "orchestrator/report/law_report.h"
 #include "orchestrator/report/prediction_report.h"
+#include "orchestrator/report/survival_report.h"
 #include "orchestrator/theory/delays_in_effect.h"
 #include "orchestrator/theory/draws.h"
 #include "orchestrator/theory/graph_facts.h"
+#include "orchestrator/theory/loss_tolerance.h"
+#include "orchestrator/theory/survival.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/config_args.h"
 #include "orchestrator/verbs/law_trial.h"
@@ -155,6 +158,8 @@ Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Predict
                {"safety", SafetyPredictionJson(prediction)}};
   AddPredictedFigures(experiment, prediction, json);
   json["phases"] = PhasesJson(experiment, prediction);
+  json["cannot_lose"] = LossToleranceJson(LossToleranceOf(experiment));
+  json["survival"] = SurvivalJson(experiment, SurvivalOf(experiment));
   json["warnings"] = prediction.warnings;
   return json;
 }
@@ -262,12 +267,14 @@ int Check(ConfigArgs& args, bool json) {
   PrintExperiment(experiment);
   PrintGraph(facts, experiment.schedule);
   if (experiment.network.is_secure()) PrintLine("security", SecurityText(experiment));
+  if (const auto tolerance = LossToleranceOf(experiment)) PrintLine("losses", tolerance->words);
   for (const std::string& line : DelayLines(experiment)) PrintLine("delay in use", line);
   PrintPredictions(experiment, prediction);
   for (const LaterPhase& phase : prediction.later) {
     PrintLine(fmt::format("from {:g} s", experiment.time_s(phase.from)), LawText(phase.experiment->law));
     PrintPredictions(*phase.experiment, phase.prediction);
   }
+  for (const auto& [label, text] : SurvivalLines(experiment, SurvivalOf(experiment))) PrintLine(label, text);
   for (const std::string& warning : prediction.warnings) std::cout << "warning: " << warning << "\n";
   return 0;
 }

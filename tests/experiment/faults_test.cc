@@ -206,6 +206,20 @@ TEST(LostAgent, ThatCameBackByAnEventIsNotRestartedOnceMore) {
 }
 
 // A law in Python counts its calls: a fresh one begins with 0.
+TEST(LostAgent, IsDueToComeBackAtATickThatIsKnown) {
+  const Experiment experiment = Load(TwoAgents("on_agent_loss = 'restart'\nrestart_after_s = 0.25\n"));
+  LiveExperiment live(experiment, &LawTable(), true);
+  EXPECT_EQ(live.NextRestart(), std::nullopt);
+  live.Take({.tick = 60, .fault = Fault{.agent = 2}, .where = "test"});
+  live.Take({.tick = 70, .fault = Fault{.agent = 1}, .where = "test"});
+  EXPECT_EQ(live.NextRestart(), 85);
+  EXPECT_THAT(live.RestartsAt(84), IsEmpty());
+  for (const Event& event : live.RestartsAt(85)) live.Take(event);
+  EXPECT_EQ(live.NextRestart(), 95);
+  live.Take({.tick = 90, .restart = 1, .where = "test"});
+  EXPECT_EQ(live.NextRestart(), std::nullopt);
+}
+
 TEST(Restart, BeginsWithAFreshLaw) {
   const std::string counts =
       "[run]\nduration_s = 1.0\non_agent_loss = 'hold'\n[agents]\ncount = 2\nmodel = 'double_integrator'\n[law]\n"

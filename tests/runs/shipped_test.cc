@@ -292,6 +292,43 @@ TEST(Check, SaysAboutHowLargeTheFilesWillBe) {
   }
 }
 
+TEST(Check, SaysWhatSurvivesTheFaultsOfAnExperiment) {
+  const std::string check = std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("faults");
+  const Ran said = Shell(check);
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_THAT(said.output, testing::HasSubstr("\n  losses         any one agent may be lost\n"));
+  EXPECT_THAT(said.output,
+              testing::HasSubstr(
+                  "\n  faults         from 12 s agent 3 is lost: the others have a spanning tree\n"
+                  "  faults         from 14 s no agent is lost, unheard or deaf, and none lies\n"
+                  "  faults         from 30 s agent 5 lies: law formation leaves nothing out; the graph is 3-robust, "
+                  "with which W-MSR would tolerate 1\n"
+                  "  faults         from 40 s no agent is lost, unheard or deaf, and none lies\n"));
+  const auto json = nlohmann::json::parse(Shell(check + " --json").output);
+  EXPECT_EQ(json["cannot_lose"], nlohmann::json::array());
+  ASSERT_EQ(json["survival"].size(), 4u);
+  const nlohmann::json empty = nlohmann::json::array();
+  EXPECT_EQ(json["survival"][0], nlohmann::json({{"from_s", 12.0},
+                                                 {"lost", {3}},
+                                                 {"unheard", empty},
+                                                 {"deaf", empty},
+                                                 {"liars", empty},
+                                                 {"ends_run", false},
+                                                 {"spanning_tree", true},
+                                                 {"cut_off", empty},
+                                                 {"robustness", nullptr},
+                                                 {"liars_tolerated", nullptr},
+                                                 {"liars_heard", 0}}));
+  EXPECT_EQ(json["survival"][1]["from_s"], 14.0);
+  EXPECT_EQ(json["survival"][2]["liars"], nlohmann::json({5}));
+  EXPECT_EQ(json["survival"][2]["robustness"], 3);
+  EXPECT_EQ(json["survival"][2]["liars_tolerated"], 1);
+  EXPECT_EQ(json["survival"][2]["liars_heard"], 1);
+  EXPECT_EQ(json["survival"][3]["spanning_tree"], nullptr);
+  EXPECT_THAT(Shell(check + " --set graph.topology=path --set run.on_agent_loss=hold").output,
+              testing::HasSubstr("\n  losses         without agent 2, 3, 4 or 5 the others have no spanning tree\n"));
+}
+
 TEST(Check, WarnsWhenTheFirstCommandWouldSaturate) {
   const Ran run =
       Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") + " --set law.p_gain=1.0");

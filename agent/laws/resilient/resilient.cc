@@ -173,6 +173,7 @@ R_i \text{: what } i \text{ hears, without the } F \text{ largest above and the 
       .make = MakeOf<Resilient>,
       .wanted = WantsVelocity,
       .left_out = LeftOutByResilient,
+      .liars_left_out = [](const LawConfig& law) { return ParamsOf<ResilientParams>(law).f; },
       .predict = PredictResilient,
       .meter = MeterOf<ResilientMeter>};
 }
