@@ -6,11 +6,16 @@
 namespace mascot {
 namespace {
 
+bool IsAlwaysThere(const AgentConfig& agent) {
+  const AgentFaults& faults = agent.faults;
+  return agent.start_s == 0 && std::isinf(agent.stop_s) && !faults.is_lost() && !faults.is_mute && !faults.is_deaf &&
+         faults.Of(FaultPart::kLink) == nullptr;
+}
+
 /// Whether every sample of every edge arrives: perfect links, a constant graph, and every agent there all the time.
 bool IsPlain(const Experiment& experiment) {
   return experiment.schedule.IsConstant() && experiment.cut.empty() && experiment.links.ArePerfect(experiment.graph) &&
-         std::ranges::all_of(experiment.agents,
-                             [](const AgentConfig& agent) { return agent.start_s == 0 && std::isinf(agent.stop_s); });
+         std::ranges::all_of(experiment.agents, IsAlwaysThere);
 }
 
 }  // namespace

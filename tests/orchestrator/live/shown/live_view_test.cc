@@ -305,6 +305,43 @@ name = "consensus"
   });
 }
 
+TEST(LiveView, KnowsThatNobodyHearsAnAgentThatIsLostOrMuteOrHasNoLink) {
+  Watched run(Load(R"(
+[run]
+duration_s = 0.5
+on_agent_loss = "hold"
+[agents]
+count = 3
+position_m = [[0, 0, 1], [4, 0, 1], [0, 4, 2]]
+model = "double_integrator"
+[graph]
+edges = [[1, 2], [1, 3], [2, 1], [2, 3], [3, 1], [3, 2]]
+[law]
+name = "consensus"
+[[events]]
+at_s = 0.1
+fault = { agent = 3, kind = "kill" }
+[[events]]
+at_s = 0.2
+fault = { agent = 1, kind = "mute" }
+[[events]]
+at_s = 0.3
+restart = 3
+[[events]]
+at_s = 0.4
+fault = { agent = 2, of = "link", kind = "off" }
+)"));
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/frame");
+  const std::map<std::int64_t, const char*> edges = {
+      {9, "[1,1,1,1,1,1]"}, {11, "[1,0,1,0,0,0]"}, {21, "[1,0,0,0,0,0]"}, {31, "[1,1,0,1,0,1]"}, {41, "[2,1,0,1,0,2]"}};
+  run.Fly([&](std::int64_t tick) {
+    const auto row = edges.find(tick - 1);
+    if (row == edges.end()) return;
+    EXPECT_EQ(viewer.FrameAt(row->first)["edge"], Json::parse(row->second)) << row->first;
+  });
+}
+
 TEST(EdgesNow, AreLostAsOftenAsSamplesAreLostAndAbsentWhenTheGraphSaysSo) {
   const Experiment experiment = Load(R"(
 [run]
