@@ -1,6 +1,10 @@
 #include "experiment/faults.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <map>
 
 #include "experiment/experiment.h"
 
@@ -60,6 +64,28 @@ FalseDataConfig ReadOffset(Section& section, const FaultRow& row) {
   return config;
 }
 
+/// What the fault of a part is: "wrong: 0.8 of its command".
+std::string WordsOf(const Fault& fault) {
+  const std::string kind(kFaultKinds.Name(fault.kind));
+  const Eigen::Vector3d& off = fault.false_data.offset_m;
+  const std::string offset = fmt::format("[{:g}, {:g}, {:g}] m", off.x(), off.y(), off.z());
+  const bool is_motor = fault.of == FaultPart::kMotor;
+  switch (fault.kind) {
+    case FaultKind::kWrong:
+      return kind + (is_motor ? fmt::format(": {:g} of its command", fault.remaining) : ": off by " + offset);
+    case FaultKind::kGarbage:
+      return is_motor ? kind : kind + ": off by up to " + offset;
+    case FaultKind::kSlow:
+      return fmt::format("{}: every {:g} s", kind, fault.period_s);
+    case FaultKind::kDelayed:
+      return fmt::format("{} by {:g} s", kind, fault.delay_s);
+    case FaultKind::kIntermittent:
+      return fmt::format("{}: fails with probability {:g}", kind, fault.probability);
+    default:
+      return kind;
+  }
+}
+
 }  // namespace
 
 const PartFault* AgentFaults::Of(FaultPart part, int motor) const {
@@ -108,6 +134,28 @@ std::span<const FaultRow> FaultRows() {
       {kLink, kOk, "", "ends the fault"},
   };
   return rows;
+}
+
+std::vector<std::string> InWords(const AgentFaults& faults) {
+  std::vector<std::string> words;
+  if (faults.is_lost()) words.emplace_back(faults.hangs ? "lost: it hangs" : "lost: its process has died");
+  if (faults.is_mute) words.emplace_back("mute: nobody hears it");
+  if (faults.is_deaf) words.emplace_back("deaf: it hears nobody");
+  std::map<std::string, std::vector<int>> motors;  // by what is wrong with them
+  for (const auto& [fault, since] : faults.parts) {
+    if (fault.of == FaultPart::kMotor)
+      motors[WordsOf(fault)].push_back(fault.motor);
+    else
+      words.push_back(std::string(kFaultParts.Name(fault.of)) + " " + WordsOf(fault));
+  }
+  for (const auto& [what, numbers] : motors) {
+    const bool is_all = numbers.size() == kMotors;
+    words.push_back((is_all                ? std::string("all motors")
+                     : numbers.size() == 1 ? fmt::format("motor {}", numbers.front())
+                                           : fmt::format("motors {}", fmt::join(numbers, ", "))) +
+                    " " + what);
+  }
+  return words;
 }
 
 std::span<const Key> FaultKeys() { return kFaultKeys; }

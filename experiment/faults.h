@@ -95,6 +95,10 @@ struct FaultRow {
 };
 std::span<const FaultRow> FaultRows();
 
+/// What is wrong with an agent, in words, each fault of its own: "lost: its process has died", "link delayed by 0.5 s".
+/// Empty: nothing is, as far as events have done it.
+std::vector<std::string> InWords(const AgentFaults& faults);
+
 /// The keys of `fault`.
 std::span<const Key> FaultKeys();
 /// Reads `fault`. `agents`: their number; 0: unknown because of a mistake.

@@ -98,6 +98,32 @@ TEST(Fault, HasUsualValues) {
             "fault = { agent = 1, of = \"motor\", kind = \"slow\", motor = 0, period_s = 0.5 }\n");
 }
 
+TEST(Fault, IsSaidInWords) {
+  const auto words = [](const std::vector<std::string>& faults) {
+    AgentFaults agent;
+    for (const std::string& fault : faults)
+      Begin(*EventFrom(7, "fault = { agent = 1, " + fault + " }", 2, "t").fault, 7, agent);
+    return InWords(agent);
+  };
+  const std::string sensor = "of = 'sensor', kind = ", motor = "of = 'motor', kind = ", link = "of = 'link', kind = ";
+  EXPECT_THAT(words({}), IsEmpty());
+  EXPECT_THAT(words({"kind = 'kill'"}), ElementsAre("lost: its process has died"));
+  EXPECT_THAT(words({"kind = 'hang'"}), ElementsAre("lost: it hangs"));
+  EXPECT_THAT(words({"kind = 'mute'", "kind = 'deaf'"}), ElementsAre("mute: nobody hears it", "deaf: it hears nobody"));
+  EXPECT_THAT(words({"kind = 'mute'", "kind = 'ok'"}), IsEmpty());
+  EXPECT_THAT(words({sensor + "'wrong', offset_m = [1.5, 0, 0]"}), ElementsAre("sensor wrong: off by [1.5, 0, 0] m"));
+  EXPECT_THAT(words({link + "'garbage'"}), ElementsAre("link garbage: off by up to [1, 1, 1] m"));
+  EXPECT_THAT(words({link + "'slow', period_s = 0.25"}), ElementsAre("link slow: every 0.25 s"));
+  EXPECT_THAT(words({link + "'delayed', delay_s = 0.3"}), ElementsAre("link delayed by 0.3 s"));
+  EXPECT_THAT(words({sensor + "'intermittent', probability = 0.2"}),
+              ElementsAre("sensor intermittent: fails with probability 0.2"));
+  EXPECT_THAT(words({motor + "'off'"}), ElementsAre("all motors off"));
+  EXPECT_THAT(words({motor + "'garbage', motor = 2", motor + "'wrong', motor = 1, remaining = 0.8"}),
+              ElementsAre("motor 2 garbage", "motor 1 wrong: 0.8 of its command"));
+  EXPECT_THAT(words({motor + "'stuck', motor = 2", motor + "'stuck', motor = 4", sensor + "'off'"}),
+              ElementsAre("sensor off", "motors 2, 4 stuck"));
+}
+
 TEST(Fault, MistakesAreToldWithTheirPlace) {
   const auto refusal = [](const std::string& fault) { return Refusal(TwoAgents() + FaultEvent(fault)); };
   EXPECT_THAT(refusal("agent = 3, kind = 'kill'"), HasSubstr("agent: expected an integer in [1, 2], got 3"));

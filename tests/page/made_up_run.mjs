@@ -3,6 +3,15 @@
 
 const RATE_HZ = 100, DURATION_S = 60;
 
+/** Some rows of the table of faults. */
+const FAULT_KINDS = [
+  ["agent", "kill", "unanswered", "its process dies: the agent is lost (`run.on_agent_loss`)"],
+  ["agent", "mute", "", "nobody hears it; it hears the others"], ["agent", "ok", "", "ends mute, deaf and lie"],
+  ["sensor", "stuck", "", "it measures the same position and velocity for ever"],
+  ["motor", "off", "motor", "it does not turn: its command is 0, whatever the agent commands"],
+  ["link", "delayed", "delay_s", "what it sends arrives `delay_s` later"]
+].map(([of, kind, parameters, meaning]) => ({of, kind, parameters, meaning}));
+
 /** Numbers in [0, 1) that are the same each time. */
 const dice = (k) => {
   const x = Math.sin(12.9898 * k + 4.1) * 43758.5453;
@@ -39,10 +48,15 @@ export class MadeUpRun {
     cells = [],             // {region_m, agents}: regions that agents divide
     hulls = [],             // {agents, axes}: agents whose hull is drawn, which lead
     liars = {},             // number of an agent -> time from which on it lies
-    left_out = null,        // of each edge at a time: bit k for axis k; null: no law leaves anything out
-    own = {},               // key -> values that agents have of their own: {agent, value}
-    drift_m_per_s = 0,      // at which all are shown to go east
-    waits = false           // what is granted while the run is paused takes effect when it goes on
+    faults = {},            // number of an agent -> what is wrong with it, in words
+    on_agent_loss = "hold",
+    survives = [],  // {from_s, is_wrong, words}: what the team can still do
+    happened = [[15, "goto = { agent = 4, position_m = [1.0, 6.0, 3.0] }", false], [32, "cut = [[3, 4]]", true]],
+    // events of a recording: time, keys, whether they were given by hand
+    left_out = null,    // of each edge at a time: bit k for axis k; null: no law leaves anything out
+    own = {},           // key -> values that agents have of their own: {agent, value}
+    drift_m_per_s = 0,  // at which all are shown to go east
+    waits = false       // what is granted while the run is paused takes effect when it goes on
   } = {}) {
     Object.assign(this, {
       size: agents,
@@ -64,6 +78,10 @@ export class MadeUpRun {
       cells,
       hulls,
       liars,
+      faults,
+      on_agent_loss,
+      survives,
+      happened,
       left_out,
       own,
       drift_m_per_s,
@@ -124,6 +142,9 @@ export class MadeUpRun {
       cells: this.cells,
       hulls: this.hulls,
       leaves_out: this.left_out !== null,
+      on_agent_loss: this.on_agent_loss,
+      fault_kinds: this.source === "recording" ? [] : FAULT_KINDS,
+      survives: this.survives,
       obstacles: this.size > 20 ? [] :
                                   [
                                     {kind: "box", position_m: [5, 4, 1], size_m: [2, 1, 2], heading_rad: 0.5},
@@ -189,6 +210,8 @@ export class MadeUpRun {
       law: "consensus",
       leads: id === this.leader || this.hulls.some(({agents}) => agents.includes(id)),
       lies_from_s: this.liars[id] ?? null,
+      lost: (this.faults[id] ?? []).some((words) => words.startsWith("lost")),
+      faults: this.faults[id] ?? [],
       waypoints_m: id === this.leader ? [this.home[id - 1], [6, -2, 3]] : [],
       place_m: this.places_m ? [this.places_m * Math.cos(id), this.places_m * Math.sin(id), 0] : null,
       parent: 0,
@@ -253,14 +276,13 @@ export class MadeUpRun {
     this.tick = 0;
     this.state = "paused";
     this.#show(0);
-    this.events = [[15, "goto = { agent = 4, position_m = [1.0, 6.0, 3.0] }"], [32, "cut = [[3, 4]]"]].map(
-        ([t_s, keys], k) => ({
-          number: k + 1,
-          tick: t_s * RATE_HZ,
-          t_s,
-          toml: `[[events]]\nat_s = ${t_s.toFixed(1)}\n${keys}\n`,
-          by_hand: k === 1
-        }));
+    this.events = this.happened.map(([t_s, keys, by_hand], k) => ({
+                                      number: k + 1,
+                                      tick: t_s * RATE_HZ,
+                                      t_s,
+                                      toml: `[[events]]\nat_s = ${t_s.toFixed(1)}\n${keys}\n`,
+                                      by_hand
+                                    }));
   }
 
   #goTo(tick) {
@@ -365,6 +387,16 @@ export class MadeUpRun {
     return true;
   }
 
+  #takeFault(toml) {
+    const [, number] = /^(?:fault = \{ agent|restart) = (\d+)/.exec(toml) ?? [],
+             kind = /kind = "(\w+)"/.exec(toml)?.[1];
+    if (!number) return;
+    const part = /of = "(\w+)"/.exec(toml)?.[1], words = part ? `${part} ${kind}` : kind === "kill" ? "lost" : kind;
+    this.faults[number] = !kind || kind === "ok" ? [] : [...(this.faults[number] ?? []), words];
+    const lost = Object.keys(this.faults).filter((id) => this.faults[id].includes("lost"));
+    this.survives = lost.map((id) => ({from_s: 0, is_wrong: true, words: `agent ${id} is lost: the others go on`}));
+  }
+
   #event(toml, words) {
     const numbers = [...toml.replace(/"[^"]*"/g, "").matchAll(/-?\d+(\.\d+)?(e-?\d+)?/g)].map(([text]) => Number(text));
     if (toml.startsWith("goto"))
@@ -381,6 +413,7 @@ export class MadeUpRun {
         return {granted: false, words: `event by hand: law.p_gain: expected a number in [0, 1000], got ${numbers[0]}`};
       this.gains.p_gain = numbers[0];
     }
+    this.#takeFault(toml);
     const list = this.waits && this.state === "paused" ? this.waiting : this.events;
     list.push({
       number: this.events.length + this.waiting.length + 1,

@@ -361,6 +361,104 @@ test("who lies is marked and named from the time on at which it lies", async () 
   });
 });
 
+test("what goes wrong with an agent is chosen from a menu, asked for, and seen", async () => {
+  await watching({run: {on_agent_loss: "hold"}}, async ({page, fake}) => {
+    const choose = async (what) => {
+      await page.click("#fault-open");
+      await page.click(what);
+      assert.ok(await page.locator("#faults").isHidden(), "the menu closes");
+    };
+    const isGone = (number) =>
+        page.evaluate((id) => mascot.texts.some(({text}) => text === `${id} lost`) && mascot.lost.includes(id), number);
+    await pausedFromAbove(page);
+    assert.ok(await page.locator("#survives").isHidden());
+    assert.ok(!(await offered(page)).legend.includes("agent lost"));
+    await page.keyboard.press("3");
+    await page.click("#fault-open");
+    assert.equal(await page.textContent("#faults-title"), "A fault of agent 3");
+    assert.deepEqual(await page.locator("#faults h4").allTextContents(), ["agent", "sensor", "motor", "link"]);
+    assert.deepEqual(
+        await page.locator("#faults .choices button").allTextContents(),
+        ["kill", "mute", "ok", "stuck", "off", "delayed"]);
+    assert.equal(
+        await page.getAttribute("[data-fault='link delayed']", "title"),
+        "what it sends arrives delay_s later\nwith the usual delay_s");
+    assert.match(await page.textContent("#faults p"), /killed or hangs is lost \(run\.on_agent_loss = "hold"\)/);
+    await page.keyboard.press("Escape");
+    assert.ok(await page.locator("#faults").isHidden());
+    assert.equal(await page.evaluate(() => mascot.selected), 3, "Escape closes the menu alone");
+
+    await choose("[data-fault='agent kill']");
+    await until(page, () => document.querySelector("#detail .wrong")?.textContent === "lost");
+    await nextPicture(page);
+    assert.ok(await isGone(3));
+    assert.equal(await page.textContent("#survives"), "agent 3 is lost: the others go on");
+    assert.ok((await offered(page)).legend.includes("agent lost"));
+    await until(page, () => document.querySelector("#table .row[data-agent='3']").matches(".lost"));
+    assert.match(await page.textContent("#table .row[data-agent='3']"), /^3 lost/);
+    await toggle(page, "Who is lost");
+    await nextPicture(page);
+    assert.ok(!await page.evaluate(() => mascot.texts.some(({text}) => text === "3 lost")));
+    await choose("#faults .row-end button");
+    await until(page, () => document.querySelector("#detail .wrong")?.textContent === "");
+    assert.ok(await page.locator("#survives").isHidden());
+    await choose("[data-fault='motor off']");
+    await until(page, () => document.querySelector("#detail .wrong")?.textContent === "motor off");
+    assert.deepEqual(
+        events(fake),
+        ['fault = { agent = 3, kind = "kill" }', "restart = 3", 'fault = { agent = 3, of = "motor", kind = "off" }']);
+    assert.equal(await page.locator("#marks i.fault.by-hand").count(), 3);
+  });
+});
+
+test("a fault that ends the run says so before it is asked for", async () => {
+  await watching({run: {on_agent_loss: "abort"}}, async ({page}) => {
+    await page.keyboard.press("2");
+    await page.click("#fault-open");
+    assert.match(await page.textContent("#faults p.warn"), /kill and hang end the run/);
+    assert.deepEqual(await page.locator("#faults .danger").allTextContents(), ["kill"]);
+    assert.deepEqual(await page.locator("#faults .row-end button").allTextContents(), ["Close"]);
+    await page.locator("#faults .row-end button").click();
+    await until(page, () => !document.getElementById("faults").open);
+  });
+});
+
+test("faults of a recording are marked on its time line, told at their time, and not changed", async () => {
+  const happened = [
+    [5, "goto = { agent = 4, position_m = [1.0, 6.0, 3.0] }", false],
+    [12, 'fault = { agent = 3, kind = "kill" }', false], [14, "restart = 3\nafter_loss = true", false],
+    [20, 'fault = { agent = 2, of = "motor", kind = "off" }', true]
+  ];
+  const run = {
+    source: "recording",
+    happened,
+    faults: {3: ["lost: its process has died"]},
+    survives: [
+      {from_s: 12, is_wrong: true, words: "agent 3 is lost: nobody hears anybody"},
+      {from_s: 14, is_wrong: false, words: "no agent is lost"}
+    ]
+  };
+  await watching({run}, async ({page}) => {
+    const marks = page.locator("#marks i.fault");
+    assert.equal(await marks.count(), 3);
+    assert.match(await marks.nth(0).getAttribute("title"), /^event 2\n(.*\n)*fault = \{ agent = 3, kind = "kill" \}/);
+    assert.match(await marks.nth(1).getAttribute("title"), /^event 3\n(.*\n)*restart = 3/);
+    const colours = await page.locator("#marks i")
+                        .evaluateAll((each) => each.map((mark) => getComputedStyle(mark).backgroundColor));
+    assert.equal(new Set(colours.slice(1)).size, 1, "one colour for faults, by hand or not");
+    assert.notEqual(colours[0], colours[1]);
+    await marks.nth(0).click();
+    await until(page, () => mascot.tick === 1200);
+    await until(page, () => survives.textContent === "agent 3 is lost: nobody hears anybody" && !survives.hidden);
+    await marks.nth(1).click();
+    await until(page, () => mascot.tick === 1400 && survives.hidden);
+    await page.locator("#scene").focus();
+    await page.keyboard.press("3");
+    await until(page, () => document.querySelector("#detail .wrong")?.textContent === "lost: its process has died");
+    assert.equal(await page.locator("#fault-open").count(), 0);
+  });
+});
+
 test("what a law leaves out of what it hears looks so, and is told with its axes", async () => {
   await watching({run: {left_out: () => [0, 3, 0, 4]}}, async ({page, fake}) => {
     const looks = (k, l, same) => until(page, ([k, l, same]) => {
@@ -753,6 +851,11 @@ test("who only watches sees everything, is told so, and can change nothing", asy
   await page.click("#tab-tune");
   assert.match(await page.textContent("#tune"), /^This page only watches\. At this time the run has:law\./);
   assert.equal(await page.locator("#tune input").count(), 0);
+  await page.click("#tab-agents");
+  await page.locator("#scene").focus();
+  await page.keyboard.press("3");
+  await until(page, () => document.querySelector("#detail h3")?.textContent.startsWith("Agent 3"));
+  assert.equal(await page.locator("#fault-open").count(), 0);
   const [x, y] = await placeOf(page, "edgeOnScreen", await edgeInTheOpen(page));
   await page.mouse.click(x, y);
   await page.keyboard.press("Space");

@@ -383,6 +383,50 @@ test("a run whose law changes shows the law that it has, and lists the changes",
   }
 });
 
+test("a fault that the page asks for happens, is told, and ends", async () => {
+  const toml =
+      (await textOf("faults.toml")).split("[[events]]")[0].replace("restart_after_s = 2.0", "restart_after_s = 0.1");
+  const browser = await launch(), run = await startRunOf(toml, "--set", "output.save_plot=false");
+  try {
+    const {page, troubles} = await open(browser, run.url);
+    const isSeen = (lost, wrong, words) => until(
+        page,
+        ([numbers, told, survive]) => mascot.lost.join() === numbers &&
+            document.querySelector("#detail .wrong")?.textContent === told && survives.textContent === survive,
+        [lost, wrong, words]);
+    await until(page, () => mascot.state === "running");
+    await page.keyboard.press("Space");
+    await until(page, () => mascot.state === "paused");
+    await page.keyboard.press("3");
+    const choose = async (what) => {
+      await page.click("#fault-open");
+      await page.click(`[data-fault="${what}"]`);
+      await until(page, () => mascot.lastAnswer?.granted);
+      await page.locator("#scene").focus();
+      await page.keyboard.press(".");
+    };
+    await choose("link delayed");
+    await isSeen("", "link delayed by 0.5 s", "");
+    await choose("agent kill");
+    await isSeen(
+        "3", "lost: its process has died; link delayed by 0.5 s", "agent 3 is lost: the others have a spanning tree");
+    await until(
+        page,
+        () => mascot.experiment.edges.every(
+            (edge, k) => !edge.slice(0, 2).includes(3) || mascot.edgeStates[k] === 0));  // nobody hears it
+    await page.keyboard.press("Space");
+    await isSeen("", "link delayed by 0.5 s", "");
+    await until(page, () => mascot.events.length === 3);
+    assert.deepEqual(
+        await page.locator("#marks i").evaluateAll((marks) => marks.map(({className}) => className)),
+        ["by-hand fault", "by-hand fault", "fault"]);
+    assert.deepEqual(troubles, []);
+  } finally {
+    await run.stop();
+    await browser.close();
+  }
+});
+
 test("the page of a recording whose law changes shows the law of the tick", async () => {
   const browser = await launch(), recording = await startRecording(await textOf("formation_change.toml"));
   try {

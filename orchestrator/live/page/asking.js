@@ -7,6 +7,9 @@ const PATIENCE_MS = 10_000;
 /** The keys of one [[events]] table. */
 export const gotoToml = (agent, p_W) => `goto = { agent = ${agent}, position_m = [${p_W.map(metres).join(", ")}] }`;
 export const edgesToml = (verb, pairs) => `${verb} = [${pairs.map((pair) => `[${pair.join(", ")}]`).join(", ")}]`;
+export const faultToml = (agent, of, kind) =>
+    `fault = { agent = ${agent}${of === "agent" ? "" : `, of = "${of}"`}, kind = "${kind}" }`;
+export const restartToml = (agent) => `restart = ${agent}`;
 export function setToml(key, value, agents = []) {
   const only = agents.length ? `\nagents = [${agents.join(", ")}]` : "";
   return `set = { ${JSON.stringify(key)} = ${tomlValue(value)} }${only}`;

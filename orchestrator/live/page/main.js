@@ -138,9 +138,10 @@ window.mascot = {
   get events() { return model.events; },
   get leftOut() { return model.frame?.left_out ?? []; },  // by edge: bit k for axis k
   get liars() { return model.liars; },                    // numbers of agents
-  get cells() { return drawnBy("cells"); },               // {agent, corners [x, y]}
-  get hulls() { return drawnBy("hulls"); },               // lists of points [x, y, z]
-  get texts() { return view.texts; },                     // {text, box: [left, top, right, bottom]}
+  get lost() { return model.lost; },
+  get cells() { return drawnBy("cells"); },  // {agent, corners [x, y]}
+  get hulls() { return drawnBy("hulls"); },  // lists of points [x, y, z]
+  get texts() { return view.texts; },        // {text, box: [left, top, right, bottom]}
   get selected() { return model.selected; },
   get followed() { return view.eye.followed; },
   get lastAnswer() { return model.lastAnswer; },

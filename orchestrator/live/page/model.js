@@ -147,9 +147,23 @@ export class Model {
     return (this.experiment?.agents ?? []).filter(lies).map(({id}) => id);
   }
 
-  /** What an agent is beside the others: "leads", "lies". */
+  /** Numbers of the agents that are lost. */
+  get lost() { return (this.experiment?.agents ?? []).filter(({lost}) => lost).map(({id}) => id); }
+
+  /** What is wrong with an agent by faults, in words; empty: nothing. */
+  faultsOf(number) { return this.agent(number).faults; }
+
+  /** What the team can still do in spite of what is wrong, in words; empty: nothing is wrong. */
+  get survives() {
+    const t_s = this.frame?.t_s ?? -1;
+    const now = this.experiment?.survives.findLast(({from_s}) => t_s >= from_s - 1e-9);
+    return now?.is_wrong ? now.words : "";
+  }
+
+  /** What an agent is beside the others: "leads", "lies", "lost". */
   rolesOf(number) {
-    return [...(this.agent(number).leads ? ["leads"] : []), ...(this.liars.includes(number) ? ["lies"] : [])];
+    const {leads, lost} = this.agent(number);
+    return [...(leads ? ["leads"] : []), ...(this.liars.includes(number) ? ["lies"] : []), ...(lost ? ["lost"] : [])];
   }
 
   /** The number of an agent, and what it is. */

@@ -9,6 +9,7 @@
 #include "agent/laws/laws.h"
 #include "orchestrator/formats/compact_json.h"
 #include "orchestrator/formats/outside_json.h"
+#include "orchestrator/theory/survival.h"
 
 namespace mascot {
 namespace {
@@ -59,10 +60,33 @@ Json AgentJson(const AgentConfig& agent) {
           {"law", agent.law.name},
           {"leads", is_leader || std::ranges::binary_search(HullOf(agent.law), agent.id)},
           {"lies_from_s", agent.lie ? Json(agent.lie->from_s) : Json(nullptr)},
+          {"lost", agent.faults.is_lost()},
+          {"faults", InWords(agent.faults)},
           {"waypoints_m", waypoints},
           {"place_m", places_W.empty() ? Json(nullptr) : ToJson(places_W[i])},
           {"parent", pursuit ? pursuit->parent[i] : 0},
           {"goto", is_leader || !waypoints.empty()}};
+}
+
+/// The table of faults, from which people choose what goes wrong.
+Json FaultKindsJson() {
+  Json json = Json::array();
+  for (const FaultRow& row : FaultRows())
+    json.push_back({{"of", kFaultParts.Name(row.of)},
+                    {"kind", kFaultKinds.Name(row.kind)},
+                    {"parameters", row.parameters},
+                    {"meaning", row.meaning}});
+  return json;
+}
+
+/// What the team can still do in spite of its faults, in words, each entry until the next.
+Json SurvivesJson(const Experiment& experiment) {
+  Json json = Json::array();
+  for (const Survival& survival : SurvivalsOf(experiment))
+    json.push_back({{"from_s", experiment.time_s(survival.from)},
+                    {"is_wrong", survival.IsAnythingWrong()},
+                    {"words", survival.words}});
+  return json;
 }
 
 /// Agents of which the same is drawn: `of` has it.
@@ -274,6 +298,9 @@ std::string ExperimentJson(const Experiment& experiment, const ShownTheory& theo
                       {"cells", CellsJson(experiment)},
                       {"hulls", HullsJson(experiment)},
                       {"leaves_out", LeavesOut(experiment)},
+                      {"on_agent_loss", kOnAgentLoss.Name(experiment.run.on_agent_loss)},
+                      {"fault_kinds", source.recorded ? Json::array() : FaultKindsJson()},
+                      {"survives", SurvivesJson(experiment)},
                       {"obstacles", ObstaclesJson(experiment.physics.obstacles)},
                       {"wind_m_per_s", ToJson(experiment.physics.wind.mean_m_per_s)},
                       {"prediction", PredictionJson(experiment, theory.prediction, theory.since)},

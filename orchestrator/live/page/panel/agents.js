@@ -5,6 +5,8 @@ import {EDGE, limitWords, shortLimitWords} from "../model.js";
 import {exact, fixed, seconds} from "../numbers.js";
 import {cutOrMend} from "../scene/hand.js";
 
+import {FaultMenu} from "./faults.js";
+
 const ROW_PX = 28;
 const UPDATE_EVERY_MS = 150;
 const COLUMNS = [["agent", ""], ["x", "m"], ["y", "m"], ["z", "m"], ["speed", "m/s"], ["limits", ""]];
@@ -75,6 +77,8 @@ export class Agents {
     row.dataset.agent = number;
     row.style.transform = `translateY(${ROW_PX * index}px)`;
     row.setAttribute("aria-selected", number === selected);
+    row.classList.toggle("lost", this.#model.agent(number).lost);
+    row.title = this.#model.faultsOf(number).join("; ");
     const [name, ...cells] = row.children;
     name.firstChild.style.background = this.#colours[index];
     setText(name.lastChild, this.#model.nameOf(number));
@@ -95,20 +99,25 @@ function newRow() {
 class Detail {
   #model;
   #asking;
+  #menu;
   #drawn = "";  // what the elements are made for
   #values = {};
+  #wrong = null;  // what is wrong with the agent
   #heard = [];
 
   constructor(model, asking) {
     this.#model = model;
     this.#asking = asking;
+    this.#menu = new FaultMenu(model, asking, byId("faults"));
   }
 
   update() {
     const {selected, frame, experiment} = this.#model;
     if (!experiment || !frame || byId("agents").hidden) return;
     const {law} = this.#model.agent(selected) ?? {};  // an event may change it, and who leads
-    const wanted = `${experiment.edges.length} ${experiment.name} ${law} ${selected && this.#model.nameOf(selected)}`;
+    const wanted = [
+      experiment.edges.length, experiment.name, law, selected && this.#model.nameOf(selected), this.#model.canChange
+    ].join(" ");
     if (wanted !== this.#drawn) this.#make(selected);
     this.#drawn = wanted;
     if (selected) this.#fill(selected);
@@ -126,6 +135,8 @@ class Detail {
                                 this.#model.rolesOf(selected).map((role) => `, ${role}`).join("")}`
                           }));
     title.firstChild.style.background = agentColours(this.#model.size)[selected - 1];
+    if (this.#menu.isOffered) title.append(this.#faultButton(selected));
+    this.#wrong = element("p", {className: "wrong"});
     const list = element("dl");
     this.#values =
         Object.fromEntries(["position", "velocity", "attitude", "commands", "actuators", "limits"].map((name) => {
@@ -138,7 +149,14 @@ class Detail {
     const heard = element("div", {className: "heard"});
     this.#heard = this.#model.heardBy(selected).map((edge) => heard.appendChild(this.#heardRow(edge)));
     if (this.#heard.length === 0) heard.append(element("p", {className: "muted", textContent: "hears nobody"}));
-    byId("detail").replaceChildren(title, list, element("h4", {textContent: "hears"}), heard);
+    byId("detail").replaceChildren(title, this.#wrong, list, element("h4", {textContent: "hears"}), heard);
+  }
+
+  #faultButton(selected) {
+    const button = element("button", {type: "button", className: "small", id: "fault-open", textContent: "Fault …"});
+    button.title = "Let something go wrong with this agent";
+    button.addEventListener("click", () => this.#menu.open(selected));
+    return button;
   }
 
   #heardRow({index, heard, weight}) {
@@ -163,6 +181,7 @@ class Detail {
       limits: limitWords(frame.flags[selected - 1]) || "none reached",
     };
     for (const [name, text] of Object.entries(texts)) setText(this.#values[name], text);
+    setText(this.#wrong, this.#model.faultsOf(selected).join("; "));
     this.#values.limits.classList.toggle("warn", frame.flags[selected - 1] !== 0);
     this.#model.heardBy(selected).forEach((edge, k) => this.#fillHeard(this.#heard[k], edge));
   }

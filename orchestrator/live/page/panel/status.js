@@ -11,12 +11,13 @@ const HAS = {
   cells: ({cells}) => cells.length > 0,
   hulls: ({hulls}) => hulls.length > 0,
   liars: ({agents}) => agents.some(({lies_from_s}) => lies_from_s !== null),
+  lost: ({agents}) => agents.some(({lost}) => lost),
   leftOut: ({leaves_out}) => leaves_out
 };
 // Layer, words, what an experiment must have for it; nothing: it is there in all.
 const LAYERS = [
   ["trails", "Trails"], ["edges", "Edges: who hears whom"], ["leftOut", "What laws leave out", HAS.leftOut],
-  ["liars", "Who lies", HAS.liars], ["cells", "Cells of the region", HAS.cells],
+  ["liars", "Who lies", HAS.liars], ["lost", "Who is lost", HAS.lost], ["cells", "Cells of the region", HAS.cells],
   ["hulls", "Hull of the leaders", HAS.hulls], ["numbers", "Numbers"], ["velocity", "Velocity"],
   ["acceleration", "Commanded acceleration"], ["plan", "Waypoints, places, prediction"],
   ["tree", "Tree of pursuit", HAS.tree], ["heights", "Heights"]
@@ -25,7 +26,8 @@ const LAYERS = [
 const LEGEND = [
   ["heard", "heard", HAS.edges], ["lost", "lost", HAS.edges], ["left-out", "left out", HAS.leftOut],
   ["far", "out of range", HAS.range], ["none", "no edge", HAS.edges], ["tree", "pursues", HAS.tree],
-  ["cells", "cells", HAS.cells], ["hulls", "hull of leaders", HAS.hulls], ["lies", "lies", HAS.liars]
+  ["cells", "cells", HAS.cells], ["hulls", "hull of leaders", HAS.hulls], ["lies", "lies", HAS.liars],
+  ["gone", "agent lost", HAS.lost]
 ];
 
 export class Status {
@@ -59,6 +61,8 @@ export class Status {
         connected ? "Connected. The run has not begun yet." :
                     "No run answers at this address yet. The page connects as soon as one does.");
     document.body.classList.toggle("stale", !connected && !isOver);
+    byId("survives").hidden = this.#model.survives === "";
+    setText(byId("survives"), this.#model.survives);
   }
 
   #onExperiment() {

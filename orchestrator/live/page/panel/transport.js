@@ -137,7 +137,7 @@ export class Transport {
       ...events.map(({t_s, number, toml, by_hand}) => ({
                       t_s,
                       title: `event ${number}${by_hand ? " by hand" : ""}\n${toml}`,
-                      className: by_hand ? "by-hand" : ""
+                      className: [...(by_hand ? ["by-hand"] : []), ...(isFault(toml) ? ["fault"] : [])].join(" ")
                     }))
     ];
     if (JSON.stringify(marks) === this.#marked) return;
@@ -150,6 +150,9 @@ export class Transport {
     }));
   }
 }
+
+/** Whether an event lets something go wrong, or ends it: its text has a line for that. */
+const isFault = (toml) => /^(fault|restart) = /m.test(toml);
 
 /** Incidents in groups, in order of time: those of the same part of the time line are one. */
 function thinned(incidents, end_s) {

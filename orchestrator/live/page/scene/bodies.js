@@ -117,6 +117,7 @@ export class Bodies extends Group {
   #shadows;
   #dots;
   #neutral = new MeshLambertMaterial();
+  #lost = [];  // numbers of agents, which are grey
   #shade = new MeshBasicMaterial({transparent: true, opacity: 0.12, depthWrite: false});
 
   constructor(agents) {
@@ -143,8 +144,16 @@ export class Bodies extends Group {
     this.paint();
   }
 
+  /** Takes the numbers of the agents that are lost. */
+  setLost(lost) {
+    if (lost.join() === this.#lost.join()) return;
+    this.#lost = lost;
+    this.paint();
+  }
+
   paint() {
     const colours = agentColours(this.radii_m.length).map(rgb);
+    for (const number of this.#lost) colours[number - 1] = rgb(styleColour("lost-body"));
     for (const {indices, tinted} of this.#groups) {
       tinted.geometry.attributes.color.copyArray(indices.flatMap((index) => colours[index]));
       tinted.geometry.attributes.color.needsUpdate = true;

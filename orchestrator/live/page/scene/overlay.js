@@ -1,5 +1,5 @@
 // Texts and marks of constant size, above the picture: numbers of agents, the scale of the ground, waypoints, formation
-// places, the predicted meeting point, who lies, and where an agent is being sent.
+// places, the predicted meeting point, who lies or is lost, and where an agent is being sent.
 import {agentColours, styleColour} from "../colours.js";
 import {fixed} from "../numbers.js";
 
@@ -10,7 +10,7 @@ const MOST_NUMBERS = 60;  // with more agents, only those of interest and those 
 const NEAR_PX = 26;       // on the screen, between neighbouring numbers of a crowd
 const BESIDE = 0.65;      // of a body's radius to the right and up is where its number stands, between the arms
 const LEAST_RING_PX = 11;
-const FURNITURE = ".views, #wind, #legend";  // what stands above the view, and holds texts of its own
+const FURNITURE = ".views, #wind, .foot";  // what stands above the view, and holds texts of its own
 
 // What takes its place before what: of numbers, those of interest come before the others.
 const RANK = {
@@ -58,6 +58,7 @@ export class Overlay {
     if (shown.plan) this.#plan(experiment, frame);
     this.#rings(experiment);
     if (shown.liars) this.#liars();
+    if (shown.lost) this.#lost();
     if (shown.numbers) this.#numbers(experiment);
     if (ghost) this.#ghost(ghost);
   }
@@ -112,25 +113,48 @@ export class Overlay {
     }
   }
 
+  /** A cross through the body of each agent that is lost. */
+  #lost() {
+    for (const id of this.#view.model.lost) {
+      const [x, y, depth] = this.#view.screen.subarray(3 * (id - 1), 3 * id);
+      const r = this.#squareOf(id) - 2;
+      if (depth > 1) continue;
+      for (const [colour, width] of [[styleColour("stage"), 5], [styleColour("lost"), 2.4]])
+        this.#stroke(() => {
+          for (const down of [1, -1]) {
+            this.#pen.moveTo(x - r, y - down * r);
+            this.#pen.lineTo(x + r, y + down * r);
+          }
+        }, colour, width, []);
+    }
+  }
+
   /** Half a side of the square around an agent that lies. */
   #squareOf(id) { return Math.max(LEAST_RING_PX, this.#view.radiusPx(id)) + 2; }
 
   #numbers({agents}) {
     const {model, pointed, screen, shown} = this.#view, isCrowd = agents.length > MOST_NUMBERS, taken = new Set();
-    const liars = new Set(shown.liars ? model.liars : []);
+    const liars = new Set(shown.liars ? model.liars : []), gone = new Set(shown.lost ? model.lost : []);
     const write = ({id, leads}, rank) => {
-      const lies = liars.has(id);
+      const lies = liars.has(id), isLost = gone.has(id);
       const [x, y, depth] = screen.subarray(3 * (id - 1), 3 * id);
       const cell = `${Math.round(x / NEAR_PX)} ${Math.round(y / NEAR_PX)}`;
       if (depth > 1 || (isCrowd && taken.has(cell))) return;
       taken.add(cell);
-      const away = lies ? this.#squareOf(id) + 3 : BESIDE * this.#view.radiusPx(id);
+      const away = lies || isLost ? this.#squareOf(id) + 3 : BESIDE * this.#view.radiusPx(id);
       this.#labels.want(
-          `agent ${id}`, rank, [x, y], [id, leads ? "leads" : "", lies ? "lies" : ""].filter(Boolean).join(" "),
-          around(Math.max(10, away), Math.max(12, away)),
-          {colour: styleColour(lies ? "lies" : "text"), bold: id === model.selected || leads || lies});
+          `agent ${id}`, rank, [x, y],
+          [id, leads ? "leads" : "", lies ? "lies" : "", isLost ? "lost" : ""].filter(Boolean).join(" "),
+          around(Math.max(10, away), Math.max(12, away)), {
+            colour: styleColour(
+                isLost   ? "lost" :
+                    lies ? "lies" :
+                           "text"),
+            bold: id === model.selected || leads || lies || isLost
+          });
     };
-    const isOfInterest = ({id, leads}) => id === model.selected || id === pointed.agent || leads || liars.has(id);
+    const isOfInterest = ({id, leads}) =>
+        id === model.selected || id === pointed.agent || leads || liars.has(id) || gone.has(id);
     for (const agent of agents)
       if (isOfInterest(agent)) write(agent, RANK.OF_INTEREST);
     if (isCrowd && this.#view.eye.distance() >= 40) return;

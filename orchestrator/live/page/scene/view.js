@@ -29,6 +29,7 @@ const SHOWN = {
   cells: true,
   hulls: true,
   liars: true,
+  lost: true,
   leftOut: true,
   plan: true,
   heights: true
@@ -125,6 +126,7 @@ export class View {
     this.#replace("hulls", hulls.length > 0 ? new Hulls(hulls) : null);
     this.#replace("obstacles", new Obstacles(obstacles));
     this.#replace("plan", new WaypointPaths(agents));
+    this.layers.bodies.setLost(this.#model.lost);
     this.#newRow = true;
   }
 
