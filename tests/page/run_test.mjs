@@ -149,11 +149,12 @@ set = { "law.p_gain" = 0.3 }
 
 test("the page of a run becomes that of its recording when the run has ended, with pictures and summary", async () => {
   const browser = await launch();
-  const run = await startRunOf(FLOWN, "--engine", "inprocess", "--set", "run.pace=20", "--stay");
+  const run = await startRunOf(FLOWN, "--engine", "inprocess", "--stay");
   try {
     const {page, troubles} = await open(browser, run.url);
     await until(page, () => mascot.tick > 0 && mascot.state === "running");
     assert.ok(await page.isHidden("#tab-results"), "a run that goes on has no results");
+    await page.selectOption("#pace", "20");  // not before: the run would be over when the page is open
     await until(page, () => mascot.experiment.source === "recording" && mascot.state === "paused");
     await page.click("#tab-results");
     await until(page, () => [...document.querySelectorAll("#results img")].some((image) => image.naturalWidth > 100));
