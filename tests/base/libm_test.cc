@@ -2,6 +2,7 @@
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 
+#include <Eigen/Core>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -99,6 +100,12 @@ TEST(LibmOf, TwoAnglesHasTheBitsOfEach) {
       ASSERT_EQ(of.cos[i], std::cos(angles[i])) << angles[i];
     }
   }
+}
+
+TEST(ProductsOfMatrices, AreComputedInTheSameBlocksOnEveryProcessor) {
+  EXPECT_EQ(Eigen::l1CacheSize(), 32 << 10);
+  EXPECT_EQ(Eigen::l2CacheSize(), 256 << 10);
+  EXPECT_EQ(Eigen::l3CacheSize(), 2 << 20);
 }
 
 TEST(LibmOf, ThisProgramIsThatOfItsSharedLibrariesToo) {
