@@ -1,7 +1,8 @@
 #pragma once
 
 // Several numbers at once, in the vector registers of the processor. This header is for sources that are compiled for
-// one kind of them: it has what the compiler's options allow, four lanes with AVX, two with SSE2 and else one.
+// one kind of them: it has what the compiler's options allow, four lanes with AVX, two with SSE2 or on aarch64, and
+// else one.
 //
 // Each operation rounds in each lane as that of a double does, and the functions of libm are SLEEF's deterministic
 // ones, which base/libm.cc takes, too. So a program may take as many lanes as its processor has: the results have the
@@ -16,6 +17,8 @@
 
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 #define MASCOT_IN_LANES [[gnu::always_inline]] inline
@@ -25,7 +28,7 @@ namespace {  // NOLINT(google-build-namespaces): on purpose, see above
 
 #if defined(__AVX__)
 constexpr std::ptrdiff_t kLanes = 4;
-#elif defined(__SSE2__)
+#elif defined(__SSE2__) || defined(__aarch64__)
 constexpr std::ptrdiff_t kLanes = 2;
 #else
 constexpr std::ptrdiff_t kLanes = 1;
@@ -88,6 +91,13 @@ MASCOT_IN_LANES Real Cos(Real x) { return Sleef_cinz_cosd2_u10sse2(x); }
 MASCOT_IN_LANES Real Asin(Real x) { return Sleef_cinz_asind2_u10sse2(x); }
 MASCOT_IN_LANES Real Atan2(Real y, Real x) { return Sleef_cinz_atan2d2_u10sse2(y, x); }
 MASCOT_IN_LANES Real Hypot(Real x, Real y) { return Sleef_cinz_hypotd2_u05sse2(x, y); }
+#elif defined(__aarch64__)
+MASCOT_IN_LANES Real Sqrt(Real x) { return vsqrtq_f64(x); }
+MASCOT_IN_LANES Real Sin(Real x) { return Sleef_cinz_sind2_u10advsimdnofma(x); }
+MASCOT_IN_LANES Real Cos(Real x) { return Sleef_cinz_cosd2_u10advsimdnofma(x); }
+MASCOT_IN_LANES Real Asin(Real x) { return Sleef_cinz_asind2_u10advsimdnofma(x); }
+MASCOT_IN_LANES Real Atan2(Real y, Real x) { return Sleef_cinz_atan2d2_u10advsimdnofma(y, x); }
+MASCOT_IN_LANES Real Hypot(Real x, Real y) { return Sleef_cinz_hypotd2_u05advsimdnofma(x, y); }
 #else
 MASCOT_IN_LANES Real Sqrt(Real x) { return InEach(__builtin_sqrt(x[0])); }
 MASCOT_IN_LANES Real Sin(Real x) { return InEach(Sleef_cinz_sind1_u10purec(x[0])); }

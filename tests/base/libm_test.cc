@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <bit>
 #include <cmath>
+#include <complex>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -12,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "base/complex_division.h"
 #include "base/sines.h"
 
 namespace mascot {
@@ -99,6 +101,32 @@ TEST(LibmOf, TwoAnglesHasTheBitsOfEach) {
       ASSERT_EQ(of.sin[i], std::sin(angles[i])) << angles[i];
       ASSERT_EQ(of.cos[i], std::cos(angles[i])) << angles[i];
     }
+  }
+}
+
+/// A number of any magnitude, at times one of those that need care.
+double AnyNumber(std::mt19937_64& random) {
+  constexpr double kSpecial[] = {
+      0, -0.0, kInfinity, -kInfinity, 1, 0x1p-1074, 0x1p-1022, 0x1p1023, 0x1.fffffffffffffp1023};
+  if (random() % 8 == 0) return kSpecial[random() % std::size(kSpecial)];
+  const double fraction = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
+  const int any = static_cast<int>(random() % 2040) - 1030, usual = static_cast<int>(random() % 20) - 10;
+  return std::ldexp(fraction, random() % 2 == 0 ? any : usual);
+}
+
+TEST(Quotient, HasTheBitsOfTheDivisionOfTheCompilerOnX86) {
+#ifndef __x86_64__
+  GTEST_SKIP() << "the compiler's division of complex numbers is ours on this processor";
+#endif
+  std::mt19937_64 random(4);
+  for (int k = 0; k < 1'000'000; ++k) {
+    const double a = AnyNumber(random), b = AnyNumber(random), c = AnyNumber(random), d = AnyNumber(random);
+    const std::complex<double> theirs = std::complex(a, b) / std::complex(c, d), ours = Quotient({a, b}, {c, d});
+    const auto same = [](double x, double y) {
+      return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y) || (std::isnan(x) && std::isnan(y));
+    };
+    ASSERT_TRUE(same(ours.real(), theirs.real()) && same(ours.imag(), theirs.imag()))
+        << "(" << a << ", " << b << ") / (" << c << ", " << d << "): " << ours << ", expected " << theirs;
   }
 }
 
