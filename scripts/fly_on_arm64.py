@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+"""Flies experiments over DDS with all agents on aarch64, by qemu, and compares each recording with a flight in one process
+of this machine: scripts/arm64 fly [FILE...]. Exit code 1 if a bit differs, or a run fails."""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+ORCHESTRATOR = ROOT / "build/release/orchestrator"
+LIMIT_S = 20  # of simulated time
+WAIT_S = 600  # for all agents to start, or one to decide: qemu computes about ten times slower than the processor
+HAND = re.compile(r"^waiting for: agent (.*)$", re.MULTILINE)
+
+
+def inline(value):
+    """A value in TOML, on one line."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+    if isinstance(value, list):
+        return "[" + ", ".join(map(inline, value)) + "]"
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {inline(one)}" for key, one in value.items()) + " }"
+    return repr(value)
+
+
+def by_hand(path):
+    """Options of `up` by which all agents of an experiment are started by hand."""
+    experiment = tomllib.loads(path.read_text())
+    overrides = {override["id"]: override for override in experiment["agents"].get("override", [])}
+    count = experiment["agents"].get("count") or len(experiment["agents"]["positions_m"])
+    for agent in range(1, count + 1):
+        overrides.setdefault(agent, {"id": agent})["host"] = "external"
+    duration_s = min(LIMIT_S, experiment["run"]["duration_s"])
+    return ["--set", f"agents.override={inline(list(overrides.values()))}", "--set", f"run.duration_s={duration_s}",
+            "--set", f"run.start_timeout_s={WAIT_S}", "--set", f"run.agent_timeout_s={WAIT_S}"]
+
+
+def fly(path, folder):
+    """Flies an experiment. Returns what failed, in words; empty: nothing did."""
+    command = [ORCHESTRATOR, "up", path, "--out", folder, *by_hand(path)]
+    agents = []
+    with open(folder.with_suffix(".log"), "w+") as log:
+        up = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
+        try:
+            while not agents and up.poll() is None:
+                found = HAND.findall(pathlib.Path(log.name).read_text())
+                agents = [subprocess.Popen([ROOT / "scripts/arm64", "run", ROOT / "build/arm64/agent", *words.split(),
+                                            "--transport", "udp"]) for words in found]
+            code = up.wait()
+        finally:
+            for process in [*agents, up]:
+                if process.poll() is None:
+                    process.terminate()
+            for process in [*agents, up]:
+                process.wait()
+    if code != 0:
+        return f"exit code {code}\n{pathlib.Path(log.name).read_text()}"
+    verified = subprocess.run([ORCHESTRATOR, "verify", folder], capture_output=True, text=True)
+    print(verified.stdout.strip(), flush=True)
+    return "" if verified.returncode == 0 else verified.stdout + verified.stderr
+
+
+def main():
+    paths = [pathlib.Path(path) for path in sys.argv[1:]] or sorted((ROOT / "configs").glob("*.toml"))
+    failed = 0
+    for path in paths:
+        with tempfile.TemporaryDirectory() as folder:
+            words = fly(path, pathlib.Path(folder) / path.stem)
+        print(f"{path.stem}: {'FAILED: ' + words if words else 'the same, bit for bit'}", flush=True)
+        failed += bool(words)
+    sys.exit(1 if failed else 0)
+
+
+main()
