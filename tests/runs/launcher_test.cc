@@ -491,6 +491,12 @@ TEST_F(OnOtherHosts, RefuseWhatIsNotTheSameProgram) {
   std::filesystem::permissions(folder_.File("older"), std::filesystem::perms::owner_all);
   EXPECT_THAT(launch("launch = ['env']\nprogram = '" + folder_.File("older") + "'\n"),
               HasSubstr("host lab1 has another build of MASCOT: 0.0.1, build 7, expected "));
+  WriteFile(folder_.File("on_arm"),
+            "#!/bin/sh\necho '{\"kind\": \"hello\", \"build\": \"0.0.1, build 7\", \"sources\": \"7\", \"processor\": "
+            "\"aarch64\", \"machine\": \"\", \"seen_from\": \"\"}'\nsleep 100\n");
+  std::filesystem::permissions(folder_.File("on_arm"), std::filesystem::perms::owner_all);
+  EXPECT_THAT(launch("launch = ['env']\nprogram = '" + folder_.File("on_arm") + "'\n"),
+              HasSubstr("host lab1 (aarch64) was built from other sources: MASCOT 0.0.1, sources 7; expected MASCOT "));
   EXPECT_THAT(launch("launch = ['false']\n"), HasSubstr("host_lab1 exited with code 1"));
   EXPECT_THAT(launch("launch = ['" + folder_.File("nowhere") + "']\n"),
               HasSubstr("cannot start " + folder_.File("nowhere")));

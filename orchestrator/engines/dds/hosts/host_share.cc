@@ -8,6 +8,7 @@
 #include "base/utf8.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
+#include "orchestrator/engines/dds/hosts/same_bits.h"
 #include "orchestrator/formats/compact_json.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
@@ -78,7 +79,11 @@ void HostShare::Tell(HostWords words) {
 }
 
 int HostShare::Run() {
-  Tell(WordsOf(HostHello{.build = BuildText(), .machine = MachineText(), .seen_from = SeenFrom()}));
+  Tell(WordsOf(HostHello{.build = BuildText(),
+                         .sources = SourcesText(),
+                         .processor = ProcessorText(),
+                         .machine = MachineText(),
+                         .seen_from = SeenFrom()}));
   try {
     while (Look()) {
       const int signal = stop_.Within(20ms);

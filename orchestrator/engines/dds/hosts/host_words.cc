@@ -36,7 +36,9 @@ HostProcess ReadProcess(const HostWords& words) {
 }  // namespace
 
 HostWords WordsOf(const HostHello& hello) {
-  return {{"kind", "hello"}, {"build", hello.build}, {"machine", hello.machine}, {"seen_from", hello.seen_from}};
+  return {{"kind", "hello"},          {"build", hello.build},
+          {"sources", hello.sources}, {"processor", hello.processor},
+          {"machine", hello.machine}, {"seen_from", hello.seen_from}};
 }
 
 HostWords WordsOf(const HostJob& job) {
@@ -55,7 +57,10 @@ HostWords WordsOf(const HostJob& job) {
 
 HostHello ReadHello(const HostWords& words) {
   OutsideFields fields(words);
+  const auto text_if_there = [&](const char* key) { return fields.Has(key) ? fields.Text(key, kLongestField) : ""; };
   HostHello hello{.build = fields.Text("build", kLongestField),
+                  .sources = text_if_there("sources"),
+                  .processor = text_if_there("processor"),
                   .machine = fields.Text("machine", kLongestField),
                   .seen_from = fields.Text("seen_from", kLongestField)};
   fields.Require();

@@ -19,6 +19,8 @@ constexpr std::chrono::milliseconds kBetweenSigns{500};
 /// The first message of a host: its name and its build.
 struct HostHello {
   std::string build;      ///< BuildText()
+  std::string sources;    ///< SourcesText(); empty: a host that does not know the word
+  std::string processor;  ///< ProcessorText(); likewise
   std::string machine;    ///< equal for hosts that share memory, so that one domain lock and one sweep are for both
   std::string seen_from;  ///< our address, as that host sees it; empty: unknown
 };

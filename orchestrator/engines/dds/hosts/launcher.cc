@@ -14,6 +14,7 @@
 
 #include "base/utf8.h"
 #include "orchestrator/engines/dds/hosts/route.h"
+#include "orchestrator/engines/dds/hosts/same_bits.h"
 #include "orchestrator/formats/compact_json.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
@@ -226,9 +227,10 @@ void Launcher::TakeWordOf(Remote& remote, const std::string& kind, OutsideFields
 /// Checks the other side, and tells it what to do.
 void Launcher::Greet(Remote& remote, const HostHello& hello) {
   const HostConfig& host = remote.config;
-  if (hello.build != BuildText())
-    throw std::runtime_error(fmt::format("host {} has another build of MASCOT: {}, expected {}", host.name,
-                                         Quote(hello.build), BuildText()));
+  const ProgramBuild theirs{.text = Quote(hello.build), .sources = hello.sources, .processor = Quote(hello.processor)};
+  const std::string why_not =
+      WhyNotTogether({.text = BuildText(), .sources = SourcesText(), .processor = ProcessorText()}, theirs);
+  if (!why_not.empty()) throw std::runtime_error(fmt::format("host {} {}", host.name, why_not));
   for (const auto& other : remotes_)
     if (other->greeted && other->machine == hello.machine && hello.machine != MachineText())
       throw std::runtime_error(

@@ -41,7 +41,8 @@ class Launcher {
   /// Starts the launch commands. Throws std::runtime_error if one cannot be started.
   void Start();
   /// Reads the messages of the hosts, and sends a sign of life. Call it at least ten times a second. Returns whether
-  /// there was a message. Throws std::runtime_error if a host is of another build, cannot do its job, or is lost.
+  /// there was a message. Throws std::runtime_error if a host may not be of the run (WhyNotTogether()), cannot do its
+  /// job, or is lost.
   bool Pump();
   /// Processes on other hosts that have ended since the last call.
   std::vector<Exit> Reap();

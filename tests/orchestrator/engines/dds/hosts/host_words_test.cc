@@ -20,8 +20,9 @@ HostJob JobOfThree() {
 }
 
 TEST(HostWords, AreReadAsTheyWereSaid) {
-  const HostHello hello = ReadHello(WordsOf(HostHello{.build = "1.0", .machine = "a 7", .seen_from = "10.0.0.1"}));
-  EXPECT_EQ(hello.build + hello.machine + hello.seen_from, "1.0a 710.0.0.1");
+  const HostHello hello = ReadHello(WordsOf(
+      HostHello{.build = "1.0", .sources = "f7", .processor = "aarch64", .machine = "a 7", .seen_from = "10.0.0.1"}));
+  EXPECT_EQ(hello.build + hello.sources + hello.processor + hello.machine + hello.seen_from, "1.0f7aarch64a 710.0.0.1");
   const HostJob job = ReadJob(WordsOf(JobOfThree()));
   EXPECT_EQ(WordsOf(job), WordsOf(JobOfThree()));
 }
