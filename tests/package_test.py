@@ -66,7 +66,8 @@ def options_of(text):
 
 def typed_in(text):
     """The commands of `orchestrator` in a page of Markdown, each as a list of words: in blocks, and between backticks."""
-    lines = [line for block in re.findall(r"^```(?:console|bash)?(?: [^\n]*)?\n(.*?)^```$", text, re.M | re.S)
+    blocks = re.findall(r"^```(\w*)[^\n]*\n(.*?)^```$", text, re.M | re.S)
+    lines = [line for language, block in blocks if language in ("", "console", "bash")
              for line in block.splitlines() if not line.startswith("  ")]  # drawings are indented
     lines += [line for line in re.findall(r"`([^`\n]+)`", re.sub(r"^```.*?^```$", "", text, flags=re.M | re.S))]
     commands = [command for line in lines
@@ -137,6 +138,8 @@ class CommandLine(unittest.TestCase):
     def test_such_a_name_would_be_found(self):
         text = "```\n$ orchestrator up a.toml --vieuw  # no --such\n```\n`orchestrator plott RUN --size column\\|page` here\n"
         self.assertEqual(typed_in(text), [["up", "a.toml", "--vieuw"], ["plott", "RUN", "--size", "column|page"]])
+        between = "```toml\na = 1\n```\nEach orchestrator makes one.\n```\n$ orchestrator ps\n```\n"
+        self.assertEqual(typed_in(between), [["ps"]])
         self.assertEqual(options_of("| `--size screen\\|column` | x |\n| `--json` | y |\n"), {"--size": "screen|column", "--json": ""})
 
 

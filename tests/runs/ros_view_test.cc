@@ -174,16 +174,19 @@ TEST_F(RosView, WhoComesLateToARunThatStandsStillSeesTheLastTick) {
 }
 
 TEST_F(RosView, ChangesNoBitOfTheRecordingAlsoIfItsReaderHangs) {
-  const std::string long_enough_s = "200.0";  // for a reader to join
-  Up without = Fly("without", long_enough_s);
+  const std::string duration_s = "500.0";
+  Up without = Fly("without", duration_s);
   EXPECT_EQ(without.Wait(), 0) << without.err();
-  Up with = Fly("with", long_enough_s, kOn);
-  ASSERT_TRUE(HasDomain(with));
+  Up with = Fly("with", duration_s, kOn);
+  ASSERT_TRUE(Flies(with)) << with.err();
+  SignalTo(with.Child("agent_2"), SIGSTOP);  // the run stands until its reader has joined
   const RViz rviz(with, folder_.File("rviz"));
-  ASSERT_TRUE(Until([&] { return rviz.Sees("transforms") || with.IsOver(); }));
+  ASSERT_TRUE(Until([&] { return rviz.Discovers(Topic::Tf()) && rviz.Discovers(Topic::Scene()); })) << with.err();
+  SignalTo(with.Child("agent_2"), SIGCONT);
+  ASSERT_TRUE(Until([&] { return rviz.Sees("transforms"); })) << with.err();
   rviz.Signal(SIGSTOP);
+  EXPECT_FALSE(with.IsOver());
   EXPECT_EQ(with.Wait(), 0) << with.err();
-  EXPECT_TRUE(rviz.Sees("transforms"));
   EXPECT_TRUE(with.File("run.mcap") == without.File("run.mcap")) << "run.mcap differs";
   EXPECT_TRUE(with.File("states.npz") == without.File("states.npz")) << "states.npz differs";
 }
