@@ -132,13 +132,14 @@ class Matches {
     const std::lock_guard lock(mutex_);
     return std::ranges::any_of(endpoints_, [&](const Guid& guid) { return is_wanted(guid.guidPrefix); });
   }
-  /// Number of processes, where `process_of` names the process of an endpoint, or nothing if it does not count.
-  template <class ProcessOf>
-  int Processes(const ProcessOf& process_of) const {
+  /// Number of processes, where `processes_of` names the processes of an endpoint's participant; none if it does not
+  /// count.
+  template <class ProcessesOf>
+  int Processes(const ProcessesOf& processes_of) const {
     const std::lock_guard lock(mutex_);
     std::set<std::string> processes;
     for (const Guid& guid : endpoints_)
-      if (std::string process = process_of(guid.guidPrefix); !process.empty()) processes.insert(std::move(process));
+      for (std::string& process : processes_of(guid.guidPrefix)) processes.insert(std::move(process));
     // If two endpoints come at the same moment, Fast DDS may name one of them twice and the other not at all.
     return static_cast<int>(std::ssize(processes) + std::max<std::ptrdiff_t>(number_ - std::ssize(endpoints_), 0));
   }
@@ -169,7 +170,7 @@ class WriterBase::Listener : public dds::DataWriterListener {
   int matched() const {
     const Peers* peers = domain_.peers_;
     if (peers == nullptr) return matches_.Number();
-    return matches_.Processes([peers](const Peers::GuidPrefix& reader) { return peers->ProcessOf(reader); });
+    return matches_.Processes([peers](const Peers::GuidPrefix& reader) { return peers->ProcessesOf(reader); });
   }
   bool HasReaderOf(const std::string& process) const {
     return matches_.Any([&](const Peers::GuidPrefix& reader) { return domain_.peers_->ProcessOf(reader) == process; });
@@ -244,7 +245,10 @@ class ReaderBase::Listener : public dds::DataReaderListener {
   int matched() const {
     const Peers* peers = domain_.peers_;
     if (peers == nullptr) return matches_.Number();
-    return matches_.Processes([&](const Peers::GuidPrefix& writer) { return peers->WriterOf(topic_, writer); });
+    return matches_.Processes([&](const Peers::GuidPrefix& writer) {
+      std::string process = peers->WriterOf(topic_, writer);
+      return process.empty() ? std::vector<std::string>() : std::vector{std::move(process)};
+    });
   }
 
  private:

@@ -123,10 +123,32 @@ void Peers::Leave(const GuidPrefix& participant) {
     }
 }
 
+void Peers::Vacate(const std::string& process) {
+  const std::lock_guard lock(mutex_);
+  const auto entry = std::ranges::find(entries_, process, &Entry::process);
+  if (entry == entries_.end()) return;
+  *entry = {.process = process, .key = {}, .free = ProcessKey()};
+  ++version_;
+}
+
 std::string Peers::ProcessOf(const GuidPrefix& participant) const {
   const std::lock_guard lock(mutex_);
   const auto found = Find(participant);
   return found ? entries_[*found].process : ProvenProcessOf(participant);
+}
+
+std::vector<std::string> Peers::ProcessesOf(const GuidPrefix& participant) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> processes;
+  if (const auto found = Find(participant)) {
+    processes.push_back(entries_[*found].process);
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+      if (const ProcessKey& key = entries_[i].key; i != *found && key.IsExact() && key.Fits(participant))
+        processes.push_back(entries_[i].process);
+  } else if (std::string proven = ProvenProcessOf(participant); !proven.empty()) {
+    processes.push_back(std::move(proven));
+  }
+  return processes;
 }
 
 std::string Peers::WriterOf(const Topic& topic, const GuidPrefix& writer) const {

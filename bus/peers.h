@@ -52,8 +52,13 @@ class Peers {
   /// Call it when a participant has left. If it had taken the place of a process that is started by hand, the place is
   /// free again.
   void Leave(const GuidPrefix& participant);
+  /// The process has ended: its place is free, for the first participant of its name, as after Await().
+  void Vacate(const std::string& process);
   /// Name of the process of this participant; empty: it is not of the run.
   std::string ProcessOf(const GuidPrefix& participant) const;
+  /// Names of all processes of the run whose place exactly this participant has. In a run it has one place, or none; in
+  /// the replay of an agent, one participant stands for all processes but the agent's.
+  std::vector<std::string> ProcessesOf(const GuidPrefix& participant) const;
 
   /// Name of the process of this participant, if it may write `topic`; else counts a sample that was not taken, and
   /// returns an empty name.

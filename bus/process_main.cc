@@ -295,6 +295,8 @@ void ProcessArgs::AddTo(CLI::App& app) {
   app.add_option("--peers-at", options.peers_at, "IPv4 address of the host of --peers (default: 127.0.0.1)");
   app.add_option("--awaits", awaited, "How many participants this one waits for before it makes readers and writers")
       ->check(CLI::Range(0, 20000));
+  app.add_flag("--patient", options.patient,
+               "Others wait for this process without a limit, and do not take it for gone: it runs in a debugger");
   app.add_option("--from-tick", from_tick, "The first tick that this process answers, after a restart")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));
   app.add_option("--parent", parent, "Process id of the program that spawned this process: end when it dies");

@@ -208,14 +208,16 @@ bool UsesSharedMemory(const DomainOptions& options) {
   return TransportOf(options).shared_memory && options.role != DiscoveryRole::kServer;
 }
 
-const Duration_t kSeldomAsked(0, 200'000'000), kOftenAsked(0, 20'000'000), kBelievedOnItsWay(0, 5'000'000);
+const Duration_t kSeldomAsked(0, 200'000'000), kOftenAsked(0, 20'000'000), kAlwaysAsked(0, 2'000'000),
+    kBelievedOnItsWay(0, 5'000'000);
 
 // How a writer finds out that a sample was lost, and when it sends the sample again: once a heartbeat asked the reader,
 // which comes periodically while a sample is not confirmed, and once the writer no longer believes that the sample is
 // on its way. In lockstep, a tick waits for this.
 void SetRedelivery(const TopicTraits& traits, Redelivery redelivery, dds::RTPSReliableWriterQos& reliable) {
   reliable.times.heartbeatPeriod = kSeldomAsked;
-  if (traits.rhythm == TopicRhythm::kRare) return;
+  if (redelivery == Redelivery::kAlways) reliable.times.heartbeatPeriod = kAlwaysAsked;
+  if (redelivery == Redelivery::kAlways || traits.rhythm == TopicRhythm::kRare) return;
   // 0 would wake the event thread at every write, and so does a short time. Where nothing gets lost, it may be long.
   reliable.times.nackSupressionDuration = Duration_t(1, 0);
   reliable.disable_heartbeat_piggyback = true;
@@ -247,6 +249,7 @@ dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   if (TransportOf(options).udp || options.role != DiscoveryRole::kPeer)
     qos.transport().user_transports.push_back(Udp(options));
   SetDiscovery(qos, options);
+  if (options.patient) qos.wire_protocol().builtin.discovery_config.leaseDuration = eprosima::fastrtps::c_TimeInfinite;
   return qos;
 }
 

@@ -45,6 +45,9 @@ struct DomainOptions {
   std::string peers_at = "127.0.0.1";  ///< IPv4 address of the host of `peers`
   /// With network.security: what the process takes part with. Null: without security.
   std::shared_ptr<const Credentials> credentials = {};
+  /// Others believe that this participant is there until it leaves, however long they hear nothing of it: it may be
+  /// stopped in a debugger. Else they believe so for 20 s.
+  bool patient = false;
 };
 
 /// The UDP port at which the participant with this number is announced to, if it has got its ports.
@@ -64,6 +67,7 @@ eprosima::fastdds::dds::DomainParticipantQos ParticipantQos(const DomainOptions&
 enum class Redelivery {
   kSeldom,    ///< the writer asks seldom what has arrived: shared memory and the loopback interface lose nothing
   kOften,     ///< the writer asks often: a network may lose datagrams
+  kAlways,    ///< the writer asks every 2 ms what has arrived, and waits for its readers before it goes on
   kOnDemand,  ///< the writer does not ask: who lacks an answer asks for it (best effort in DDS)
 };
 eprosima::fastdds::dds::DataWriterQos WriterQos(TopicKind kind, Redelivery redelivery);

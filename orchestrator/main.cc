@@ -40,6 +40,7 @@ constexpr VerbEntry kVerbs[] = {
     {"tune", "search for the values of keys that make a figure smallest or largest", SetUpTune},
     {"compare", "the summaries of several runs side by side", SetUpCompare},
     {"verify", "fly a recorded experiment again, and compare bit for bit", SetUpVerify},
+    {"replay", "play a recording on DDS, or let one agent live through it again and compare", SetUpReplay},
     {"recover", "make a whole recording of what a cut or damaged one still holds", SetUpRecover},
     {"export", "write a recording as NumPy arrays, as CSV or as a MATLAB file", SetUpExport},
     {"host", "fly one host's share of a run; `up` starts it, nobody types it", SetUpHost},

@@ -6,7 +6,6 @@
 #include "experiment/toml/input.h"
 
 namespace mascot {
-namespace {
 
 Override ParseOverride(const std::string& set) {
   const auto equals = set.find('=');
@@ -15,8 +14,6 @@ Override ParseOverride(const std::string& set) {
   }
   return {set.substr(0, equals), set.substr(equals + 1)};
 }
-
-}  // namespace
 
 void ConfigArgs::AddTo(CLI::App& command) {
   command.add_option("config", path, "experiment file (TOML); -: standard input")->required()->type_name("CONFIG");

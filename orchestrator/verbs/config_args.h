@@ -12,6 +12,9 @@ class App;
 
 namespace mascot {
 
+/// The override that the user means by `--set KEY=VALUE`. Throws ConfigError.
+Override ParseOverride(const std::string& set);
+
 /// CONFIG [--set key=value]... [--duration-s S] [--seed N]: the arguments of every verb that reads one experiment.
 struct ConfigArgs {
   std::string path;

@@ -40,6 +40,7 @@ std::function<int()> SetUpPlot(CLI::App& command);       // plot.cc
 std::function<int()> SetUpExport(CLI::App& command);     // export.cc
 std::function<int()> SetUpRecover(CLI::App& command);    // recover.cc
 std::function<int()> SetUpVerify(CLI::App& command);     // verify.cc
+std::function<int()> SetUpReplay(CLI::App& command);     // replay.cc
 std::function<int()> SetUpPs(CLI::App& command);         // ps.cc
 std::function<int()> SetUpSend(CLI::App& command);       // send.cc
 std::function<int()> SetUpCompare(CLI::App& command);    // compare.cc

@@ -3,11 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -15,10 +13,10 @@
 
 #include "agent/laws/laws.h"
 #include "orchestrator/engines/scene_edges.h"
-#include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/recording/attached_experiment.h"
 #include "orchestrator/recording/compare.h"
 #include "orchestrator/recording/fingerprint.h"
+#include "orchestrator/recording/recorded_experiment.h"
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/verbs/fly.h"
 #include "orchestrator/verbs/law_trial.h"
@@ -28,8 +26,6 @@
 
 namespace mascot {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct VerifyArgs {
   std::string run;
@@ -43,8 +39,6 @@ struct Subject {
   McapContents contents;
   RecordingPlan plan;
   std::uint64_t ticks = 0;  ///< ticks up to the last of which it has samples
-
-  const std::string& config() const { return contents.attachments.at(kConfigFile); }
 };
 
 /// Throws ConfigError for what cannot be verified.
@@ -76,56 +70,6 @@ Experiment Load(const std::string& toml, const std::string& name, const Subject&
   if (subject.ticks >= subject.plan.ticks) return whole;
   const auto last = static_cast<std::int64_t>(std::max<std::uint64_t>(subject.ticks - 1, 1));
   return LoadExperiment(Section::FromText(StoppedAfter(whole, last), name), subject.plan.name, /*checked=*/true);
-}
-
-/// The first line in which two resolved experiments differ, with its table: "[law] p_gain = 0.3, the recording's says
-/// p_gain = 0.2". Empty: none.
-std::string FirstChange(const std::string& ours, const std::string& recorded) {
-  std::istringstream a(ours), b(recorded);
-  std::string table, line_a, line_b;
-  for (;;) {
-    const bool more_a = static_cast<bool>(std::getline(a, line_a)), more_b = static_cast<bool>(std::getline(b, line_b));
-    if (!more_a && !more_b) return "";
-    if (more_a != more_b || line_a != line_b)
-      return fmt::format("{}{}, the recording's says {}", table.empty() ? "" : table + " ",
-                         more_a ? line_a : "nothing more", more_b ? line_b : "nothing more");
-    if (line_a.starts_with("[")) table = line_a;
-  }
-}
-
-/// The experiment to fly: that of the recording, with the processes and the delivery of the run's own config.toml, and
-/// without viewers. Its hosts have launch commands, which somebody else may have written. Sets `change` if the two are
-/// not the same experiment. A recording that was cut knows of no event after the cut, and the config.toml of a run that
-/// was killed of none by hand.
-Experiment ExperimentOf(const VerifyArgs& args, const Subject& subject, std::string& change) {
-  Experiment recorded = Load(subject.config(), subject.file + " (config.toml)", subject, args.uses_hosts);
-  const fs::path path = fs::path(args.run) / "config.toml";
-  if (!fs::is_directory(args.run) || !fs::exists(path)) return recorded;
-  Experiment ours = Load(ReadRegularFile(path.string()), path.string(), subject, args.uses_hosts);
-  if (LossOf(subject.contents).empty()) {
-    change = FirstChange(WithoutDelivery(ours), WithoutDelivery(recorded));
-    ours.network.ros_view = false;
-    return ours;
-  }
-  change = FirstChange(WithoutEvents(ours), WithoutEvents(recorded));
-  const std::vector<Override> delivery = DeliveryOverrides(ours);
-  return LoadExperiment(Section::FromText(recorded.resolved, subject.file, delivery), subject.plan.name,
-                        /*checked=*/true);
-}
-
-/// What differs between the program that recorded and this one; differences of bits may come from it.
-void PrintChanges(const Subject& subject, const Experiment& experiment) {
-  if (subject.contents.library != McapWriter::Library())
-    std::cout << "note: recorded by " << subject.contents.library << ", flown again by " << McapWriter::Library()
-              << "\n";
-  const auto& about = subject.contents.metadata.find(kMetadata);
-  for (const auto& [path, fingerprint] : Fingerprints(experiment)) {
-    if (about == subject.contents.metadata.end() || !about->second.contains(path))
-      std::cout << "note: the recording does not tell which " << path << " it was flown with\n";
-    else if (about->second.at(path) != fingerprint)
-      std::cout << "note: " << path << " has changed: recorded with " << about->second.at(path) << ", now "
-                << fingerprint << "\n";
-  }
 }
 
 /// "813 of 4001 ticks, 7317 messages"; "4001 ticks, of which 401 have a row, 3609 messages"
@@ -181,15 +125,17 @@ int Verify(const VerifyArgs& args) {
   StopSignal stop;
   std::optional<EndsAtOnce> before_the_run(stop);
   const Subject subject = SubjectOf(args.run);
-  std::string change;
-  const Experiment experiment = ExperimentOf(args, subject, change);
+  const auto [experiment, change] = ReadRecordedExperiment(
+      args.run, subject.file, subject.contents,
+      [&](const std::string& toml, const std::string& name) { return Load(toml, name, subject, args.uses_hosts); });
   if (!change.empty()) {
     std::cout << subject.file << ": config.toml beside it is of another experiment: " << change << "\n"
               << "`orchestrator verify " << subject.file << "` checks the recording alone" << std::endl;
     return kExitFailed;
   }
   args.engine.Refuse(experiment);
-  PrintChanges(subject, experiment);
+  for (const std::string& note : ChangesSince(subject.contents, experiment, "flown again"))
+    std::cout << "note: " << note << "\n";
   before_the_run.reset();
   const PrivateFolder temporary;  // for the logs of the second flight, which are not kept
   const RunFolder folder((temporary.path() / "run").string(), experiment, /*force=*/false);

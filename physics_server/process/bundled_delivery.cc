@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -11,16 +10,6 @@
 
 namespace mascot {
 namespace {
-
-/// Ids of the agents that are heard in a process, in the order of its sources.
-std::vector<int> HeardIn(const Experiment& experiment, AgentRange agents, const std::vector<int>& sources) {
-  std::set<int> heard;
-  for (int id = agents.first; id <= agents.last; ++id)
-    for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) heard.insert(neighbour.id);
-  std::vector<int> in_order;
-  std::ranges::copy_if(sources, std::back_inserter(in_order), [&](int id) { return heard.contains(id); });
-  return in_order;
-}
 
 std::span<const std::uint8_t> BodyAt(const SampleBodies& bodies, std::size_t k, std::size_t size) {
   return std::span(bodies.bytes).subspan(k * size, size);
@@ -39,9 +28,8 @@ BundledDelivery::BundledDelivery(Domain& domain, const Experiment& experiment, O
       said_(experiment.agents.size(), -1) {
   const Redelivery redelivery = RedeliveryOfBundles(domain, experiment);
   for (const AgentRange& agents : AgentProcesses(experiment)) {
-    Process& process = *processes_.emplace_back(std::make_unique<Process>(Process{.agents = agents}));
-    process.sources = SourcesOf(experiment, agents);
-    process.heard = HeardIn(experiment, agents, process.sources);
+    Process& process = *processes_.emplace_back(
+        std::make_unique<Process>(Process{.bundle = AgentsBundle(experiment, agents), .agents = agents}));
     process.bundles = std::make_unique<RawWriter>(domain, Topic::Bundle(agents), redelivery);
   }
   for (const auto& process : processes_)
@@ -73,13 +61,10 @@ void BundledDelivery::Publish(const World& world, int events) {
   const std::lock_guard lock(mutex_);
   for (const auto& process : processes_) {
     if (!IsAnsweredBy(*process, world.tick())) continue;
-    BundleWriter& bundle = process->bundle;
-    bundle.Begin(world.tick());
-    bundle.BeginSection(static_cast<std::uint32_t>(process->agents.size()));
-    for (const int id : process->sources) bundle.Add(BodyAt(states_, static_cast<std::size_t>(id - 1), kStateBody));
-    bundle.BeginSection();
-    for (const int id : process->heard) bundle.Add(sent_[static_cast<std::size_t>(id - 1)]);
-    process->bundles->Write(bundle.bytes());
+    process->bundle.Make(
+        world.tick(), [this](int id) { return BodyAt(states_, static_cast<std::size_t>(id - 1), kStateBody); },
+        [this](int id) -> const SampleBodies& { return sent_[static_cast<std::size_t>(id - 1)]; });
+    process->bundles->Write(process->bundle.bytes());
   }
   WriteRow(world.tick(), states_);
   for (SampleBodies& sent : sent_) sent.Clear();

@@ -8,6 +8,7 @@
 #include "base/agent_range.h"
 #include "bus/bundle.h"
 #include "experiment/silences.h"
+#include "physics_server/process/agents_bundle.h"
 #include "physics_server/process/delivery.h"
 
 namespace mascot {
@@ -31,13 +32,11 @@ class BundledDelivery final : public Delivery {
  private:
   /// What is sent to a process of agents, and comes from it.
   struct Process {
+    AgentsBundle bundle;  ///< of the newest tick
     AgentRange agents;
-    std::vector<int> sources = {};  ///< ids: SourcesOf()
-    std::vector<int> heard = {};    ///< of the sources, those that are heard there: their messages go with the states
     std::vector<Answer> answers = {};  ///< in the newest sample
     std::int64_t answered = -1;        ///< the newest tick that the process has answered
     std::vector<int> answering = {};   ///< scratch: ids
-    BundleWriter bundle = {};          ///< of the newest tick
     std::unique_ptr<RawWriter> bundles = {};
   };
 

@@ -95,6 +95,34 @@ TEST_F(PeersTest, TheFirstThatHasTheNameTakesThePlaceOfAnAgentStartedByHand) {
   EXPECT_EQ(peers_.Claim(ParticipantOf(3, 600), "agent_2"), "agent_2") << "the place was free again";
 }
 
+TEST_F(PeersTest, OneParticipantMayHaveThePlacesOfSeveralProcesses) {
+  const ProcessKey::GuidPrefix player = ParticipantOf(1, 300);
+  for (const char* process : {"orchestrator", "physics_server", "agent_1"})
+    peers_.Know(process, ProcessKey::Of(player));
+  EXPECT_THAT(peers_.ProcessesOf(player), testing::UnorderedElementsAre("orchestrator", "physics_server", "agent_1"));
+  EXPECT_EQ(peers_.Believe(Topic::State(2), player), "physics_server");
+  EXPECT_EQ(peers_.Believe(Topic::Message(1), player), "agent_1");
+  EXPECT_EQ(peers_.Believe(Topic::Message(2), player), "");
+  EXPECT_THAT(peers_.ProcessesOf(ParticipantOf(1, 999)), ElementsAre());
+}
+
+TEST_F(PeersTest, InARunAParticipantHasOnePlaceAlsoIfProcessIdsLookTheSame) {
+  peers_.Know("agent_3", ProcessKey::WithPid(101 + 65536));  // of the id, DDS says the lower half
+  EXPECT_THAT(peers_.ProcessesOf(ParticipantOf(1, 101)), testing::SizeIs(1));
+}
+
+TEST_F(PeersTest, APlaceThatIsVacatedIsForTheNextOfItsName) {
+  EXPECT_EQ(peers_.Claim(ParticipantOf(1, 500), "agent_2"), "agent_2");
+  EXPECT_EQ(peers_.Claim(ParticipantOf(1, 501), "agent_2"), "");
+  const auto version = peers_.version();
+  peers_.Vacate("agent_2");
+  EXPECT_GT(peers_.version(), version);
+  EXPECT_EQ(peers_.ProcessOf(ParticipantOf(1, 500)), "");
+  EXPECT_EQ(peers_.Claim(ParticipantOf(1, 501), "agent_2"), "agent_2");
+  peers_.Leave(ParticipantOf(1, 500));
+  EXPECT_EQ(peers_.ProcessOf(ParticipantOf(1, 501)), "agent_2") << "its predecessor is discovered to be gone";
+}
+
 TEST_F(PeersTest, AnAgentInAContainerIsNotTakenForAnotherProcessOfTheSameId) {
   // Containers may share the host's network, and so the host's number, and count their processes on their own.
   EXPECT_EQ(peers_.Claim(ParticipantOf(1, 101), "agent_1"), "agent_1");

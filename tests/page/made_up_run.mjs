@@ -130,7 +130,7 @@ export class MadeUpRun {
       name: this.name,
       source: this.source,
       engine: this.rows ? "" : "dds",
-      recorded: this.rows ? {end_s: this.end_s, loss: this.loss, incidents: this.incidents} : null,
+      recorded: this.rows ? {run: "runs/made up", end_s: this.end_s, loss: this.loss, incidents: this.incidents} : null,
       rate_hz: RATE_HZ,
       ticks: RATE_HZ * DURATION_S,
       duration_s: DURATION_S,

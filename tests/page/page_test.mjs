@@ -929,6 +929,19 @@ test("what a recorded run came up against is marked on its time line, and is sou
   });
 });
 
+test(
+    "the selected agent of a recording has the commands that replay it",
+    () => watching({run: {source: "recording"}}, async ({page}) => {
+      await page.click("#table .row[data-agent='2']");
+      const commands = page.locator("#detail .to-type code");
+      await until(page, () => document.querySelectorAll("#detail .to-type").length === 2);
+      assert.deepEqual(
+          await commands.allTextContents(),
+          ["orchestrator replay 'runs/made up' --to 2", "orchestrator replay 'runs/made up' --speed 1"]);
+      await page.locator("#detail .to-type button").first().click();
+      await until(page, () => /Copied|Selected/.test(document.querySelector("#detail .to-type button").textContent));
+    }));
+
 test("a team that has left the picture is looked at again", async () => {
   const isSeen = (page) => page.evaluate(() => {
     const {clientWidth, clientHeight} = document.getElementById("scene");

@@ -310,6 +310,7 @@ TEST(View, PlaysARecordingWhereverAViewerWantsItUntilCtrlC) {
   const nlohmann::json experiment = viewer.NextJsonOf("/ui/experiment");
   EXPECT_EQ(experiment["source"], "recording");
   EXPECT_EQ(experiment["recorded"]["end_s"], 5.0);
+  EXPECT_EQ(experiment["recorded"]["run"], folder.File("run")) << "as `replay` takes it";
   EXPECT_EQ(experiment["recorded"]["loss"], "");
   EXPECT_EQ(experiment["recorded"]["incidents"], ReadFile(folder.File("run/events.csv")));
   viewer.Subscribe("/ui/frame");

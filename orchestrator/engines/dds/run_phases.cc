@@ -34,9 +34,11 @@ RunPhases::Time After(RunPhases::Time time, Seconds span) {
   return time + std::chrono::duration_cast<RunPhases::Time::duration>(span);
 }
 
-/// How a child ended, and why: the first error that it printed is the headline, its other lines follow. The error may
-/// name another process, such as an agent that does not answer.
-std::string Story(const std::string& process, const std::string& end, std::vector<std::string> lines) {
+std::string DiffersFromTheGraph(const std::string& how) { return "the wire differs from the graph: " + how; }
+
+}  // namespace
+
+std::string StoryOfEnd(const std::string& process, const std::string& end, std::vector<std::string> lines) {
   constexpr std::string_view kError = "error: ";
   std::string story = process + " " + end;
   const auto error = std::ranges::find_if(lines, [&](const std::string& line) { return line.starts_with(kError); });
@@ -47,10 +49,6 @@ std::string Story(const std::string& process, const std::string& end, std::vecto
   for (const std::string& line : lines) story += "\n  " + process + " | " + line;
   return story;
 }
-
-std::string DiffersFromTheGraph(const std::string& how) { return "the wire differs from the graph: " + how; }
-
-}  // namespace
 
 RunPhases::RunPhases(Rules rules, Time launched)
     : rules_(std::move(rules)),
@@ -121,7 +119,7 @@ void RunPhases::JudgeExits() {
   bool goes_on = true;
   for (const Exit& exit : std::exchange(exits_, {})) {
     const bool by_the_signal = signal_ != 0 && exit.code == 128 + signal_;
-    std::string story = by_the_signal ? "" : Story(exit.process, exit.text, rules_.last_lines(exit.process));
+    std::string story = by_the_signal ? "" : StoryOfEnd(exit.process, exit.text, rules_.last_lines(exit.process));
     if (!by_the_signal && phase_ == Phase::kFlying && rules_.is_loss(exit.process)) {
       losses_.emplace_back(exit.process, std::move(story));
       continue;

@@ -12,6 +12,10 @@
 
 namespace mascot {
 
+/// How a process ended, and why: the first error among the last lines that it printed is the headline, the other lines
+/// follow. The error may name another process, such as an agent that does not answer.
+std::string StoryOfEnd(const std::string& process, const std::string& end, std::vector<std::string> lines);
+
 /// The orchestrator's decisions during a run over DDS: when the recorder is ready, when and why the run is over, for
 /// which process to wait and for how long.
 ///

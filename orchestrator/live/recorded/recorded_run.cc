@@ -34,8 +34,9 @@ RecordedRun::RecordedRun(const std::string& run)
                .next_change = [this](std::int64_t tick) { return NextChange(tick); }}) {}
 
 RecordedPart RecordedRun::part() const {
-  const std::filesystem::path folder = std::filesystem::path(rows_.path()).parent_path();
+  const std::filesystem::path file = rows_.path(), folder = file.parent_path();
   return {.last_tick = last_tick(),
+          .run = file.filename() == "run.mcap" && !folder.empty() ? folder.string() : file.string(),
           .loss = rows_.loss(),
           .incidents = incidents_,
           .pictures = PicturesIn(folder),

@@ -159,6 +159,7 @@ Json ObstaclesJson(const std::vector<Obstacle>& obstacles) {
 
 Json RecordedJson(const Experiment& experiment, const RecordedPart& recorded) {
   return {{"end_s", experiment.time_s(recorded.last_tick)},
+          {"run", recorded.run},
           {"loss", recorded.loss},
           {"incidents", recorded.incidents},
           {"pictures", recorded.pictures},

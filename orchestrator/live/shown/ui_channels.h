@@ -65,6 +65,7 @@ struct ShownEvent {
 /// What is there of a recording.
 struct RecordedPart {
   std::int64_t last_tick = 0;
+  std::string run = {};                    ///< the run as verbs take it: the folder or the file, as the user named it
   std::string loss = {};                   ///< why later ticks may be missing; empty: there are none
   std::string incidents = {};              ///< the first lines of the events.csv beside it; empty: there is none
   std::vector<std::string> pictures = {};  ///< names of the pictures beside it

@@ -13,6 +13,7 @@
 #include "orchestrator/recording/completeness.h"
 #include "orchestrator/recording/sample_fields.h"
 #include "tests/support/call.h"
+#include "tests/support/edited_recording.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -52,35 +53,14 @@ void Change(std::string& text, const std::string& from, const std::string& to) {
   text.replace(text.find(from), from.size(), to);
 }
 
-using Edit = std::function<bool(const std::string& topic, McapContents::Message& message)>;
 bool Keep(const std::string& /*topic*/, const McapContents::Message& /*message*/) { return true; }
-
-/// Copies `contents`, those of `recording`, and the messages that `edit` keeps and may change; closes the file
-/// properly.
-void Copy(const std::string& recording, const McapContents& contents, const std::string& copy, const Edit& edit) {
-  McapWriter writer(copy);
-  for (const auto& [name, data] : contents.attachments) writer.Attach(name, "application/toml", data);
-  for (const auto& [name, entries] : contents.metadata) writer.Metadata(name, entries);
-  std::map<std::uint16_t, std::uint16_t> channels;
-  for (const auto& [id, channel] : contents.channels)
-    channels[id] = writer.AddChannel({channel.topic, channel.schema_name, channel.schema_text, channel.metadata});
-  ReadMcap(recording, [&](McapContents::Message message) {
-    if (edit(contents.channels.at(message.channel).topic, message))
-      writer.Write(channels[message.channel], message.log_time, message.data);
-  });
-  writer.Close();
-}
-
-void Copy(const std::string& recording, const std::string& copy, const Edit& edit) {
-  Copy(recording, ReadMcap(recording), copy, edit);
-}
 
 /// Copies a recording with another experiment.
 void CopyWithConfig(const std::string& recording, const std::string& copy, const std::string& from,
                     const std::string& to) {
   McapContents contents = ReadMcap(recording);
   Change(contents.attachments.at("config.toml"), from, to);
-  Copy(recording, contents, copy, Keep);
+  CopyRecording(recording, contents, copy, Keep);
 }
 
 TEST_F(Verify, ARunRepeatsBitForBit) {
@@ -118,7 +98,7 @@ TEST_F(Verify, WritesNothing) {
 TEST_F(Verify, NamesTopicTickFieldAndBothValuesOfTheFirstDifference) {
   const std::string recording = Fly(), changed = File("changed.mcap");
   std::string before, after;
-  Copy(recording, changed, [&](const std::string& topic, McapContents::Message& message) {
+  CopyRecording(recording, changed, [&](const std::string& topic, McapContents::Message& message) {
     if (message.sequence < 57 || topic != "/agent_2/state") return true;
     const Bytes old = message.data;
     message.data[4 + 24] ^= 1;  // the last bit of pose.position.x
@@ -138,7 +118,7 @@ TEST_F(Verify, NamesTopicTickFieldAndBothValuesOfTheFirstDifference) {
 
 TEST_F(Verify, NamesAMissingSample) {
   const std::string recording = Fly(), changed = File("changed.mcap");
-  Copy(recording, changed, [](const std::string& topic, McapContents::Message& message) {
+  CopyRecording(recording, changed, [](const std::string& topic, McapContents::Message& message) {
     return topic != "/agent_1/command" || message.sequence != 7;
   });
   EXPECT_EQ(Check(changed).exit_code, kExitFailed);
@@ -149,14 +129,14 @@ TEST_F(Verify, NamesAMissingSample) {
 
 TEST_F(Verify, NamesAMissingTopic) {
   const std::string recording = Fly(), changed = File("changed.mcap");
-  Copy(recording, changed, [](const std::string& topic, McapContents::Message&) { return topic != "/clock"; });
+  CopyRecording(recording, changed, [](const std::string& topic, McapContents::Message&) { return topic != "/clock"; });
   EXPECT_THAT(Check(changed).out, EndsWith(": differs: /clock at tick 0 (t = 0 s) is missing: the recording has "
                                            "/agent_1/command of t = 0.01 s there\n"));
 }
 
 TEST_F(Verify, ARecordingThatEndsInsideATickDiffers) {
   const std::string recording = Fly(), changed = File("changed.mcap");
-  Copy(recording, changed, [](const std::string& topic, McapContents::Message& message) {
+  CopyRecording(recording, changed, [](const std::string& topic, McapContents::Message& message) {
     return topic != "/clock" || message.sequence != 250;
   });
   const Said said = Check(changed);
@@ -267,8 +247,8 @@ TEST_F(Verify, ARunThatFailedIsComparedUpToItsEnd) {
 
 TEST_F(Verify, ARecordingWhoseEndWasTakenAwayIsIncomplete) {
   const std::string recording = Fly(), changed = File("changed.mcap");
-  Copy(recording, changed,
-       [](const std::string& /*topic*/, McapContents::Message& message) { return message.sequence < 100; });
+  CopyRecording(recording, changed,
+                [](const std::string& /*topic*/, McapContents::Message& message) { return message.sequence < 100; });
   const Said said = Check(changed);
   EXPECT_EQ(said.exit_code, kExitFailed);
   EXPECT_EQ(said.out, changed + ": the same, bit for bit: 100 of 251 ticks, 500 messages\n" + changed +
@@ -349,7 +329,7 @@ TEST_F(Verify, ARecordingOfARunThatEndedBeforeItsFirstTickIsRefused) {
   const std::string recording = Fly();
   McapContents contents = ReadMcap(recording);
   contents.metadata[kEarlyEnd] = {{kTicksKey, "0"}};
-  Copy(recording, contents, File("none.mcap"), [](const auto&, const auto&) { return false; });
+  CopyRecording(recording, contents, File("none.mcap"), [](const auto&, const auto&) { return false; });
   const Said said = Check(File("none.mcap"));
   EXPECT_EQ(said.exit_code, kExitUsage);
   EXPECT_EQ(said.err, "error: " + File("none.mcap") +

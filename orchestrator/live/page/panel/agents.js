@@ -6,6 +6,7 @@ import {exact, fixed, seconds} from "../numbers.js";
 import {cutOrMend} from "../scene/hand.js";
 
 import {FaultMenu} from "./faults.js";
+import {replayCommands} from "./replay.js";
 
 const ROW_PX = 28;
 const UPDATE_EVERY_MS = 150;
@@ -149,7 +150,10 @@ class Detail {
     const heard = element("div", {className: "heard"});
     this.#heard = this.#model.heardBy(selected).map((edge) => heard.appendChild(this.#heardRow(edge)));
     if (this.#heard.length === 0) heard.append(element("p", {className: "muted", textContent: "hears nobody"}));
-    byId("detail").replaceChildren(title, this.#wrong, list, element("h4", {textContent: "hears"}), heard);
+    const {run} = this.#model.experiment.recorded ?? {};
+    byId("detail").replaceChildren(
+        title, this.#wrong, list, element("h4", {textContent: "hears"}), heard,
+        ...run ? replayCommands(run, selected) : []);
   }
 
   #faultButton(selected) {

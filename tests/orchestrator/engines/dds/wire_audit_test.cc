@@ -309,5 +309,17 @@ TEST_F(WireAuditTest, AProcessThatHasEndedWritesNothingAnyMore) {
   EXPECT_EQ(audit_.Violation(), "");
 }
 
+// --- the replay of an agent -----------------------------------------------------------------------------
+
+TEST_F(WireAuditTest, AParticipantThatStandsForSeveralProcessesWritesWhatTheseMay) {
+  for (const char* process : {"physics_server", "agent_2", "agent_3"})
+    peers_.Know(process, ProcessKey::Of(Participant(99)));
+  for (const Topic& topic : {Topic::State(1), Topic::Event(), Topic::Message(2), Topic::Experiment()})
+    Writes(Participant(99), topic);
+  EXPECT_EQ(audit_.Violation(), "");
+  Writes(Participant(99), Topic::Command(1));
+  EXPECT_EQ(audit_.Violation(), "'orchestrator' writes /agent_1/command, which only agent_1 may");
+}
+
 }  // namespace
 }  // namespace mascot
