@@ -52,7 +52,7 @@ void Discoveries::on_participant_discovery(dds::DomainParticipant* participant, 
       return;
     }
     Known& known = known_[prefix];
-    known.data = std::make_unique<rtps::ParticipantProxyData>(info.info);
+    if (known.data == nullptr) known.data = std::make_unique<rtps::ParticipantProxyData>(info.info);
     PassOnIfComplete(participant, known);
   }
   // Fast DDS begins the handshake after this call, from the side with the smaller GUID.

@@ -10,7 +10,9 @@
 #include <openssl/x509.h>
 #include <openssl/x509v3.h>
 
+#include <algorithm>
 #include <array>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -180,15 +182,24 @@ std::string Governance(int domain, Protection protection) {
       domain, kinds[static_cast<std::size_t>(protection)]);
 }
 
-/// The topics that a process may use in one way; nothing, if there are none.
-std::string Allowed(const char* how, const std::vector<Topic>& topics) {
+/// The topics that a process may use in one way; nothing, if there are none. `all` are the topics of the run: several
+/// topics of a kind of which the process may use all are one expression, "rt/agent*/command", because each participant
+/// sends its permissions to all others.
+std::string Allowed(const char* how, const std::vector<Topic>& topics, const std::vector<Topic>& all) {
   if (topics.empty()) return "";
   std::string text = fmt::format("<{}><topics>\n", how);
-  for (const Topic& topic : topics) text += "<topic>" + topic.DdsName() + "</topic>\n";
+  std::map<TopicKind, std::vector<Topic>> by_kind;
+  for (const Topic& topic : topics) by_kind[topic.kind].push_back(topic);
+  for (const auto& [kind, of_kind] : by_kind) {
+    if (of_kind.size() > 1 && std::cmp_equal(of_kind.size(), std::ranges::count(all, kind, &Topic::kind)))
+      text += fmt::format("<topic>rt/agent*/{}</topic>\n", TraitsOf(kind).name);
+    else
+      for (const Topic& topic : of_kind) text += "<topic>" + topic.DdsName() + "</topic>\n";
+  }
   return text + fmt::format("</topics></{}>\n", how);
 }
 
-std::string Permissions(int domain, const Subject& subject, const Rights& rights) {
+std::string Permissions(int domain, const Subject& subject, const Rights& rights, const std::vector<Topic>& all) {
   return fmt::format(
       R"(<?xml version="1.0" encoding="UTF-8"?>
 <dds xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
@@ -203,8 +214,8 @@ std::string Permissions(int domain, const Subject& subject, const Rights& rights
 </grant></permissions>
 </dds>
 )",
-      subject.common_name, subject.Text(), kValidity, domain, Allowed("publish", rights.writes),
-      Allowed("subscribe", rights.reads));
+      subject.common_name, subject.Text(), kValidity, domain, Allowed("publish", rights.writes, all),
+      Allowed("subscribe", rights.reads, all));
 }
 
 const Subject& Authority() {
@@ -224,6 +235,7 @@ struct CertificateAuthority::Keys {
 CertificateAuthority::CertificateAuthority(const Experiment& experiment, int domain)
     : experiment_(experiment),
       domain_(domain),
+      topics_(RightsOf(experiment, kOrchestrator).reads),
       keys_(std::make_unique<const Keys>()),
       governance_(
           Signed(Governance(domain, experiment.network.protection), keys_->certificate.get(), keys_->key.get())) {
@@ -237,7 +249,7 @@ CertificateAuthority::Issued CertificateAuthority::Issue(const std::string& proc
   const Subject subject = SubjectOf(process, rank, start);
   const PrivateKey key = NewKey();
   const Certificate certificate = Certify(subject, key.get(), Authority(), keys_->key.get());
-  const std::string permissions = Permissions(domain_, subject, RightsOf(experiment_, process));
+  const std::string permissions = Permissions(domain_, subject, RightsOf(experiment_, process), topics_);
   const std::string authority = Pem(keys_->certificate.get());
   return {.credentials = {.process = process,
                           .identity_ca = authority,

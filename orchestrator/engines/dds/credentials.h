@@ -4,9 +4,11 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bus/security.h"
 #include "experiment/experiment.h"
+#include "idl/topics.h"
 #include "system/private_folder.h"
 
 namespace mascot {
@@ -44,6 +46,7 @@ class CertificateAuthority {
   struct Keys;
   const Experiment& experiment_;
   const int domain_;
+  const std::vector<Topic> topics_;  // of the run
   std::unique_ptr<const Keys> keys_;
   std::string governance_;  // signed
   Issued orchestrator_;

@@ -92,6 +92,17 @@ TEST(CertificateAuthority, AllowsWhatTheGraphSaysAndInThisDomainAlone) {
   EXPECT_THAT(credentials.governance, HasSubstr("<enable_read_access_control>true</enable_read_access_control>"));
 }
 
+TEST(CertificateAuthority, SaysInShortWhoMayUseAllTopicsOfAKind) {
+  const Experiment experiment = Three("delivery = 'topics'\n");
+  const CertificateAuthority authority(experiment, 7);
+  const std::string server = authority.Issue(kPhysicsServer, 100).credentials.permissions;
+  EXPECT_THAT(server, HasSubstr("<topic>rt/agent*/command</topic>"));
+  EXPECT_THAT(server, HasSubstr("<topic>rt/agent*/state</topic>"));
+  EXPECT_THAT(server, Not(HasSubstr("rt/agent_")));
+  EXPECT_THAT(server, Not(HasSubstr("/message")));
+  EXPECT_THAT(authority.Issue("agent_1", 100).credentials.permissions, Not(HasSubstr("*")));
+}
+
 /// The first byte of the GUIDs that a key fits.
 int FirstByte(const ProcessKey& key) { return std::stoi(key.ToHex().substr(0, 2), nullptr, 16); }
 
