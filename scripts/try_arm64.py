@@ -1,7 +1,12 @@
 #!/usr/bin/python3
-"""Flies experiments over DDS with all agents on aarch64, by qemu, and compares each recording with a flight in one process
-of this machine: scripts/arm64 fly [FILE...]. Exit code 1 if a bit differs, or a run fails."""
+"""Tries agents on aarch64, by qemu, on experiments.
+scripts/arm64 fly [FILE...]: flies them over DDS with all agents on aarch64, and compares each recording with a flight in one
+  process of this machine.
+scripts/arm64 replay [FILE...]: flies them in one process of this machine, and lets each of their agents live through the
+  recording on aarch64: its decisions must be those recorded.
+Exit code 1 if a bit differs, or a run fails."""
 
+import json
 import pathlib
 import re
 import subprocess
@@ -15,6 +20,7 @@ ORCHESTRATOR = ROOT / "build/release/orchestrator"
 LIMIT_S = 20  # of simulated time, more if events come later
 OF_USERS = re.compile(r'^name\s*=\s*"(custom|plugin)"', re.MULTILINE)  # laws whose bits are not promised
 WAIT_S = 600  # for all agents to start, or one to decide: qemu computes about ten times slower than the processor
+ON_ARM64 = f"'{ROOT / 'scripts/arm64'}' run '{ROOT / 'build/arm64/agent'}'"
 HAND = re.compile(r"^waiting for: agent (.*)\n", re.MULTILINE)
 
 
@@ -37,18 +43,22 @@ def started_by_up(event):
     return {fault["agent"]} if fault.get("kind") in ("kill", "hang") else {event.get("restart")}
 
 
-def by_hand(path):
+def agents_of(experiment):
+    return range(1, 1 + (experiment["agents"].get("count") or len(experiment["agents"]["positions_m"])))
+
+
+def duration_of(experiment):
+    last_event_s = max((event["at_s"] for event in experiment.get("events", [])), default=0)
+    return min(max(LIMIT_S, last_event_s), experiment["run"]["duration_s"])
+
+
+def by_hand(experiment):
     """Options of `up` by which the agents of an experiment are started by hand."""
-    experiment = tomllib.loads(path.read_text())
-    events = experiment.get("events", [])
     overrides = {override["id"]: override for override in experiment["agents"].get("override", [])}
-    count = experiment["agents"].get("count") or len(experiment["agents"]["positions_m"])
-    for agent in set(range(1, count + 1)).difference(*map(started_by_up, events)):
+    for agent in set(agents_of(experiment)).difference(*map(started_by_up, experiment.get("events", []))):
         overrides.setdefault(agent, {"id": agent})["host"] = "external"
-    last_event_s = max((event["at_s"] for event in events), default=0)
-    duration_s = min(max(LIMIT_S, last_event_s), experiment["run"]["duration_s"])
-    return ["--set", f"agents.override={inline(list(overrides.values()))}", "--set", f"run.duration_s={duration_s}",
-            "--set", f"run.start_timeout_s={WAIT_S}", "--set", f"run.agent_timeout_s={WAIT_S}"]
+    return ["--set", f"agents.override={inline(list(overrides.values()))}", "--set", f"run.start_timeout_s={WAIT_S}",
+            "--set", f"run.agent_timeout_s={WAIT_S}"]
 
 
 def start(words):
@@ -60,7 +70,9 @@ def start(words):
 
 def fly(path, folder):
     """Flies an experiment. Returns what failed, in words; empty: nothing did."""
-    command = [ORCHESTRATOR, "up", path, "--out", folder, *by_hand(path)]
+    experiment = tomllib.loads(path.read_text())
+    duration = ["--set", f"run.duration_s={duration_of(experiment)}"]
+    command = [ORCHESTRATOR, "up", path, "--out", folder, *duration, *by_hand(experiment)]
     agents = {}  # by their command
     with open(folder.with_suffix(".log"), "w+") as log:
         up = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
@@ -82,15 +94,34 @@ def fly(path, folder):
     return "" if verified.returncode == 0 else verified.stdout + verified.stderr
 
 
+def replay(path, folder):
+    """Lets the agents of an experiment live through its recording. Returns what failed, in words; empty: nothing did."""
+    experiment = tomllib.loads(path.read_text())
+    flown = subprocess.run([ORCHESTRATOR, "up", path, "--out", folder, "--quiet", "--engine", "inprocess",
+                            "--duration-s", str(duration_of(experiment))], capture_output=True, text=True)
+    if flown.returncode != 0:
+        return flown.stderr
+    ticks = 0
+    for agent in agents_of(experiment):
+        replayed = subprocess.run([ORCHESTRATOR, "replay", folder, "--to", str(agent), "--json", "--agent", ON_ARM64],
+                                  capture_output=True, text=True)
+        if replayed.returncode != 0:
+            return f"agent {agent}: exit code {replayed.returncode}\n{replayed.stdout}{replayed.stderr}"
+        ticks += json.loads(replayed.stdout)["ticks"]
+    print(f"{path.stem}: {ticks} ticks of {len(agents_of(experiment))} agents", flush=True)
+    return ""
+
+
 def main():
-    paths = [pathlib.Path(path) for path in sys.argv[1:]] or sorted((ROOT / "configs").glob("*.toml"))
+    trial = {"fly": fly, "replay": replay}[sys.argv[1]]
+    paths = [pathlib.Path(path) for path in sys.argv[2:]] or sorted((ROOT / "configs").glob("*.toml"))
     failed = 0
     for path in paths:
         if OF_USERS.search(path.read_text()):
             print(f"{path.stem}: left out, because its law is not built in", flush=True)
             continue
         with tempfile.TemporaryDirectory() as folder:
-            words = fly(path, pathlib.Path(folder) / path.stem)
+            words = trial(path, pathlib.Path(folder) / path.stem)
         print(f"{path.stem}: {'FAILED: ' + words if words else 'the same, bit for bit'}", flush=True)
         failed += bool(words)
     sys.exit(1 if failed else 0)
