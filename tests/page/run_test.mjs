@@ -155,7 +155,7 @@ test("the page of a run becomes that of its recording when the run has ended, wi
     await until(page, () => mascot.tick > 0 && mascot.state === "running");
     assert.ok(await page.isHidden("#tab-results"), "a run that goes on has no results");
     await page.selectOption("#pace", "20");  // not before: the run would be over when the page is open
-    await until(page, () => mascot.experiment.source === "recording" && mascot.state === "paused");
+    await until(page, () => mascot.experiment?.source === "recording" && mascot.state === "paused");
     await page.click("#tab-results");
     await until(page, () => [...document.querySelectorAll("#results img")].some((image) => image.naturalWidth > 100));
     assert.ok((await page.locator("#results img").count()) >= 3);

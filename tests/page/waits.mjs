@@ -1,7 +1,7 @@
 // How tests of the page wait: each wait has a deadline, and then says what it waited for.
 import {test as endlessTest} from "node:test";
 
-const DEADLINE_S = 240;  // ctest ends all of them after 300 s, without a word
+const DEADLINE_S = 240;  // ctest ends all of them after 900 s, without a word
 
 /** As that of node:test: a test that goes on is ended, and named. */
 export const test = (name, body) => endlessTest(name, {timeout: DEADLINE_S * 1000}, body);
