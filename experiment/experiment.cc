@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/toml/section.h"
+
 namespace mascot {
 
 std::int64_t Experiment::ticks() const { return std::llround(run.duration_s * control.rate_hz); }
@@ -13,6 +15,19 @@ std::string LossThatEndsTheRun(const Experiment& now) {
   if (lost == now.agents.end()) return "";
   return "agent " + std::to_string(lost->id) +
          " is lost: " + (lost->faults.hangs ? "it hangs" : "its process has died") + " (run.on_agent_loss = \"abort\")";
+}
+
+std::string WhatFollowsALoss(const Experiment& experiment) {
+  const auto& run = experiment.run;
+  const std::string key = "run.on_agent_loss = \"" + std::string(kOnAgentLoss.Name(run.on_agent_loss)) + "\": ";
+  switch (run.on_agent_loss) {
+    case OnAgentLoss::kHold:
+      return key + "the actuators keep their last values";
+    case OnAgentLoss::kDrop:
+      return key + "the actuators go to zero";
+    default:
+      return key + "a fresh agent takes its place after " + ShortestFloat(run.restart_after_s) + " s";
+  }
 }
 
 }  // namespace mascot

@@ -225,5 +225,7 @@ struct Experiment {
 
 /// Why run.on_agent_loss ends the run; empty: it does not.
 std::string LossThatEndsTheRun(const Experiment& now);
+/// What becomes of an agent that is lost, in words, where the run goes on.
+std::string WhatFollowsALoss(const Experiment& experiment);
 
 }  // namespace mascot

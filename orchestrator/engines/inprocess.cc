@@ -12,6 +12,7 @@
 
 #include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
+#include "experiment/processes.h"
 #include "orchestrator/engines/row_feed.h"
 #include "orchestrator/team/team.h"
 #include "physics_server/process/tick_gate.h"
@@ -25,8 +26,13 @@ using WallClock = std::chrono::steady_clock;
 /// World, agents and buffers of a run; the buffers are reused, so that ticks do not allocate.
 class Flight {
  public:
-  Flight(const Experiment& experiment, Crew& crew)
+  using Tell = std::function<void(const std::string& words)>;
+
+  Flight(const Experiment& experiment, Crew& crew, Tell tell)
       : experiment_(experiment),
+        tell_(std::move(tell)),
+        processes_(AgentProcesses(experiment)),
+        may_lose_(experiment.run.on_agent_loss != OnAgentLoss::kAbort),
         world_(experiment, World::LookForContacts::kWhenClose, World::kAllLanes, crew),
         team_(experiment, crew),
         actuation_(static_cast<std::size_t>(experiment.size())),
@@ -38,7 +44,9 @@ class Flight {
     TakeEvents(tick);
     for (const AgentConfig& agent : experiment_.agents)
       row_.motions[static_cast<std::size_t>(agent.id - 1)] = world_.State(agent.id);
-    team_.Decide(tick, row_.motions, row_.commands, SilentAt(tick));
+    if (may_lose_) kept_ = row_.commands;
+    team_.Decide(tick, row_.motions, row_.commands, SilentAt(tick), may_lose_ ? &failures_ : nullptr);
+    LoseThoseThatFailed(tick);
     for (const AgentConfig& agent : experiment_.agents) {
       const auto i = static_cast<std::size_t>(agent.id - 1);
       row_.has_answered[i] = team_.HasAnswered(agent.id);
@@ -79,6 +87,32 @@ class Flight {
     return silent_;
   }
 
+  /// Laws have failed at `tick`: nobody in their processes answers, and the next tick's events say so. Throws
+  /// std::runtime_error if there is no next tick.
+  void LoseThoseThatFailed(std::int64_t tick) {
+    if (failures_.empty()) return;
+    if (tick == experiment_.ticks()) throw std::runtime_error(failures_.front().words);
+    const auto has_failed = [this](int id) {
+      return std::ranges::find(failures_, id, &Team::Failure::agent) != failures_.end();
+    };
+    for (const AgentRange& agents : processes_) {
+      const auto failure =
+          std::ranges::find_if(failures_, [&](const Team::Failure& any) { return agents.Holds(any.agent); });
+      if (failure == failures_.end()) continue;
+      tell_(fmt::format("lost: agent {}: {}\n{}", IdsText(agents), failure->words, WhatFollowsALoss(experiment_)));
+      for (int id = agents.first; id <= agents.last; ++id)
+        if (team_.HasAnswered(id) || has_failed(id)) Lose(id, tick);
+    }
+  }
+
+  void Lose(int id, std::int64_t tick) {
+    const auto i = static_cast<std::size_t>(id - 1);
+    team_.TakeBack(id);
+    row_.commands[i] = kept_[i];
+    const Fault fault{.agent = id, .kind = FaultKind::kKill, .unanswered = true};
+    by_hand_.push_back({.tick = tick + 1, .fault = fault, .where = fmt::format("agent {}", id)});
+  }
+
   /// Takes the events of this tick: first the file's, then those given by hand, then what run.on_agent_loss brings.
   void TakeEvents(std::int64_t tick) {
     row_.events.clear();
@@ -102,10 +136,15 @@ class Flight {
   }
 
   const Experiment& experiment_;
+  const Tell tell_;
+  const std::vector<AgentRange> processes_;
+  const bool may_lose_;  // the run goes on without agents that are lost
   World world_;
   Team team_;
-  std::optional<LiveExperiment> live_;  // absent before the first event
-  std::size_t next_event_ = 0;          // in experiment_.events
+  std::vector<Team::Failure> failures_;  // at the newest tick
+  std::vector<Command> kept_;            // the commands before it, if may_lose_
+  std::optional<LiveExperiment> live_;   // absent before the first event
+  std::size_t next_event_ = 0;           // in experiment_.events
   std::vector<Event> by_hand_;
   std::optional<double> new_pace_;
   std::vector<int> silent_;
@@ -194,14 +233,15 @@ class Steering {
 }  // namespace
 
 EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
-                          const std::function<bool()>& go_on, RunRequests* requests, Crew& crew) {
+                          const std::function<bool()>& go_on, RunRequests* requests, Crew& crew,
+                          const std::function<void(const std::string& words)>& tell) {
   EngineResult result;
   const auto launched = WallClock::now();
   auto start = launched;
   std::optional<Flight> flight;
   std::optional<Steering> steering;
   try {
-    flight.emplace(experiment, crew);
+    flight.emplace(experiment, crew, tell);
     if (requests != nullptr) steering.emplace(experiment, *requests, *flight);
     RowFeed feed(experiment, sinks);
     start = WallClock::now();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "base/crew.h"
@@ -16,8 +17,12 @@ namespace mascot {
 /// the processes of the other engine. Every sink gets every row, in tick order. `go_on` is called at each tick, and
 /// while a tick waits; the run ends early, in order, when it returns false. People steer the run by `requests`; null:
 /// they cannot, and the run flies as fast as the machine can. A failure during a tick is reported in the result.
-EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
-                          const std::function<bool()>& go_on, RunRequests* requests = nullptr,
-                          Crew& crew = Crew::Alone());
+///
+/// An agent whose law fails is lost, with all agents of its process (AgentProcesses()), as over DDS, where the process
+/// ends: run.on_agent_loss says what follows. `tell` gets words for the user about it.
+EngineResult RunInProcess(
+    const Experiment& experiment, const std::vector<RowSink*>& sinks, const std::function<bool()>& go_on,
+    RunRequests* requests = nullptr, Crew& crew = Crew::Alone(),
+    const std::function<void(const std::string& words)>& tell = [](const std::string&) {});
 
 }  // namespace mascot

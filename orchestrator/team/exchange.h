@@ -32,6 +32,8 @@ class Exchange {
     next_messages_[static_cast<std::size_t>(id - 1)].assign(message.begin(), message.end());
   }
   void EndTick() { messages_.swap(next_messages_); }
+  /// After EndTick(): the message that agent `id` has sent at the tick that ended is not sent.
+  void TakeBack(int id) { messages_[static_cast<std::size_t>(id - 1)].clear(); }
 
  private:
   const Experiment& experiment_;

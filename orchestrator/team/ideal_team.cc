@@ -31,7 +31,7 @@ IdealTeam::IdealTeam(const Experiment& experiment, Crew& crew)
 }
 
 void IdealTeam::Step() {
-  team_.Want(tick_, motions_, commands_);
+  team_.Want(tick_, motions_, commands_, experiment_.run.on_agent_loss == OnAgentLoss::kAbort ? nullptr : &failures_);
   for (const AgentConfig& config : experiment_.agents) {
     const auto i = static_cast<std::size_t>(config.id - 1);
     Move(config.traits().driven_by, commands_[i], experiment_.period_s(), motions_[i]);

@@ -12,7 +12,8 @@ namespace mascot {
 
 /// Reference for the fidelity of a run: the same laws, graph, links, sensors, limits and hold, but ideal bodies. With
 /// control period h and limited command u, a model driven by acceleration becomes a double integrator
-/// (p+ = p + h v + h^2 u / 2, v+ = v + h u), a model driven by velocity a single integrator (p+ = p + h u).
+/// (p+ = p + h v + h^2 u / 2, v+ = v + h u), a model driven by velocity a single integrator (p+ = p + h u). Where the
+/// run goes on without agents that are lost (run.on_agent_loss), an agent whose law fails here keeps its last command.
 class IdealTeam {
  public:
   /// `crew`: as for Team.
@@ -25,7 +26,7 @@ class IdealTeam {
   std::span<const Command> commands() const { return commands_; }
   /// Call it when events have changed the experiment: from the current tick on, the experiment is `now`.
   void Adopt(const std::shared_ptr<const Experiment>& now) { team_.Adopt(now); }
-  /// Goes on to the next tick. Throws what a law throws.
+  /// Goes on to the next tick. Throws what a law throws, unless run.on_agent_loss lets the run go on.
   void Step();
 
  private:
@@ -33,6 +34,7 @@ class IdealTeam {
   Team team_;
   std::vector<Motion> motions_;
   std::vector<Command> commands_;
+  std::vector<Team::Failure> failures_;
   std::int64_t tick_ = 0;
 };
 

@@ -1,6 +1,8 @@
 #include "orchestrator/team/team.h"
 
 #include <algorithm>
+#include <exception>
+#include <iterator>
 
 namespace mascot {
 
@@ -40,19 +42,37 @@ void Team::ForEachPart(Work&& work) {
 }
 
 void Team::Decide(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands,
-                  std::span<const int> silent) {
+                  std::span<const int> silent, std::vector<Failure>* failures) {
   for (const int id : silent) has_answered_[static_cast<std::size_t>(id - 1)] = false;
   ForEachPart([&](Part& part) {
-    Want(tick, motions, commands, part);
+    Want(tick, motions, commands, part, failures != nullptr);
     Actuate(commands, part);
   });
+  CollectFailures(failures);
 }
 
-void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands) {
-  ForEachPart([&](Part& part) { Want(tick, motions, commands, part); });
+void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands,
+                std::vector<Failure>* failures) {
+  ForEachPart([&](Part& part) { Want(tick, motions, commands, part, failures != nullptr); });
+  CollectFailures(failures);
 }
 
-void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands, Part& part) {
+void Team::CollectFailures(std::vector<Failure>* failures) {
+  if (failures == nullptr) return;
+  failures->clear();
+  for (Part& part : parts_) {
+    std::ranges::move(part.failures, std::back_inserter(*failures));
+    part.failures.clear();
+  }
+}
+
+void Team::TakeBack(int id) {
+  has_answered_[static_cast<std::size_t>(id - 1)] = false;
+  exchange_.TakeBack(id);
+}
+
+void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands, Part& part,
+                bool failures_count) {
   for (int id = part.ids.first; id <= part.ids.last; ++id) {
     const auto i = static_cast<std::size_t>(id - 1);
     if (!HasAnswered(id)) {
@@ -60,7 +80,15 @@ void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Co
       continue;
     }
     Agent& agent = *agents_[i];
-    commands[i] = agent.Want(tick, motions[i], exchange_.SamplesFor(id, motions, part.samples));
+    try {
+      commands[i] = agent.Want(tick, motions[i], exchange_.SamplesFor(id, motions, part.samples));
+    } catch (const std::exception& failure) {
+      if (!failures_count) throw;
+      part.failures.push_back({id, failure.what()});
+      has_answered_[i] = false;
+      exchange_.Send(id, {});
+      continue;
+    }
     exchange_.Send(id, agent.message());
   }
 }

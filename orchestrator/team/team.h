@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,15 +22,25 @@ class Team {
   /// depend on it.
   explicit Team(const Experiment& experiment, Crew& crew = Crew::Alone());
 
+  /// The law of an agent has failed at a tick.
+  struct Failure {
+    int agent = 0;
+    std::string words;  ///< with the tick
+  };
+
   /// Call it when events have changed the experiment: from the next tick on, the experiment is `now`.
   void Adopt(const std::shared_ptr<const Experiment>& now);
   /// The complete commands of all agents, by id - 1. `motions`: their states at this tick. Messages that are sent
   /// during this tick arrive at the next one. Agents that are lost, or in `silent`, decide nothing and send nothing;
-  /// their commands stay as they are. Throws what Agent::Want throws, for the first agent that fails.
+  /// their commands stay as they are. `failures` gets the agents whose laws fail, by increasing id; until the next
+  /// Adopt(), they are as if in `silent`. Null: throws what Agent::Want throws, for the first that fails.
   void Decide(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands,
-              std::span<const int> silent = {});
+              std::span<const int> silent = {}, std::vector<Failure>* failures = nullptr);
   /// As Decide, but without the low-level stacks: the commands are those of Agent::Want.
-  void Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands);
+  void Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands,
+            std::vector<Failure>* failures = nullptr);
+  /// Agent `id` has not answered the last tick after all, and has sent nothing: call it before the next one.
+  void TakeBack(int id);
   /// Whether agent `id` has answered the last tick.
   bool HasAnswered(int id) const { return has_answered_[static_cast<std::size_t>(id - 1)] != 0; }
   /// The message that agent `id` sent last.
@@ -44,12 +55,15 @@ class Team {
     std::vector<Controller::Input> driven;
     std::vector<Sample> samples;                        // scratch
     std::vector<std::pair<std::size_t, Command>> kept;  // of agents that have not answered, by index in the part
+    std::vector<Failure> failures;
   };
 
   bool AnyAsksCodeOfUser() const;
   template <class Work>
   void ForEachPart(Work&& work);
-  void Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands, Part& part);
+  void Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands, Part& part,
+            bool failures_count);
+  void CollectFailures(std::vector<Failure>* failures);
   void Actuate(std::span<Command> commands, Part& part);
 
   Crew& crew_;

@@ -68,7 +68,8 @@ EngineResult Flight::Fly() {
     LastWords::Leave(&reason, 1, code);
   });
   EngineResult result = RunInProcess(
-      experiment_, sinks_, [&] { return interruptions.signal() == 0; }, requests_, crew_);
+      experiment_, sinks_, [&] { return interruptions.signal() == 0; }, requests_, crew_,
+      [&](const std::string& words) { console_.Line(words); });
   result.signal = interruptions.signal();
   return result;
 }

@@ -97,6 +97,66 @@ TEST(Losses, RestartsByRunOnAgentLossGiveTheBytesOfOneProcess) {
   EXPECT_THAT(dds.File("config.toml"), Not(HasSubstr("restart = "))) << "run.on_agent_loss brings them again";
 }
 
+/// A law in Python that fails in the agent that `fails` says, and sends a message.
+std::string FailingLaw(const std::string& fails) {
+  return "def control(t, me, neighbours):\n    if " + fails +
+         ":\n        raise ValueError('broken')\n    return [0.1 * sum(j.position[k] - me.position[k] for j in "
+         "neighbours) "
+         "for k in range(3)]\ndef message(me):\n    return [float(me.id)]\n";
+}
+
+class FailingLaws : public testing::TestWithParam<Layout> {};
+
+TEST_P(FailingLaws, AreLossesWithTheBytesOfOneProcess) {
+  ScratchFolder folder;
+  WriteFile(folder.File("law.py"), FailingLaw("(me.id, round(100 * t)) in ((2, 50), (5, 60), (3, 80))"));
+  for (const std::string what : {"hold", "restart"}) {
+    WriteFile(folder.File(what + ".toml"),
+              "[run]\nduration_s = 1.5\nrestart_after_s = 0.4\non_agent_loss = '" + what +
+                  "'\n[agents]\ncount = 5\nmodel = 'double_integrator'\nposition_m = [[0, 0, 2], [4, 0, 3], [6, 4, 4], "
+                  "[2, 6, 5], [-2, 3, 6]]\n[graph]\ntopology = 'ring'\n[law]\nname = 'custom'\nfile = '" +
+                  folder.File("law.py") + "'\n");
+    const auto fly = [&](const std::string& engine, std::vector<std::string> more) {
+      more.insert(more.end(), {"--engine", engine, "--set", "run.name=failing"});
+      Up up(folder, what + engine, folder.File(what + ".toml"), std::move(more));
+      EXPECT_EQ(up.Wait(), 0) << up.err();
+      EXPECT_THAT(up.err(), HasSubstr("ValueError: broken"));
+      EXPECT_THAT(
+          up.err(),
+          HasSubstr(what == "hold" ? "run.on_agent_loss = \"hold\": the actuators keep their last values"
+                                   : "run.on_agent_loss = \"restart\": a fresh agent takes its place after 0.4 s"));
+      return std::tuple(up.File("states.npz"), up.File("events.csv"), Verified(up).exit_code);
+    };
+    const auto one = fly("inprocess", GetParam().options), dds = fly("dds", GetParam().options);
+    EXPECT_TRUE(std::get<0>(one) == std::get<0>(dds)) << "states differ";
+    EXPECT_EQ(std::get<1>(one), std::get<1>(dds));
+    EXPECT_EQ(std::get<2>(one), 0);
+    EXPECT_EQ(std::get<2>(dds), 0);
+    EXPECT_EQ(CountOf("unanswered = true", std::get<1>(one)), GetParam().options.empty() ? 3u : 5u);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Runs, FailingLaws,
+                         testing::Values(Layout{"alone"},
+                                         Layout{"two in a process", {"--set", "network.agents_per_process=2"}}),
+                         [](const auto& row) { return ParamName(row.param.name); });
+
+TEST(Losses, ByALawThatFailsAtTheLastTickFailTheRun) {
+  ScratchFolder folder;
+  WriteFile(folder.File("law.py"), FailingLaw("me.id == 2 and t == 0.5"));
+  WriteFile(folder.File("last.toml"),
+            "[run]\nduration_s = 0.5\non_agent_loss = 'hold'\n[agents]\ncount = 2\nmodel = 'double_integrator'\n"
+            "[law]\nname = 'custom'\nfile = '" +
+                folder.File("law.py") + "'\n");
+  Up one(folder, "one", folder.File("last.toml"), {"--engine", "inprocess"});
+  EXPECT_EQ(one.Wait(), 1);
+  EXPECT_THAT(one.err(), HasSubstr("ValueError: broken"));
+  Up dds(folder, "dds", folder.File("last.toml"), {"--engine", "dds"});
+  EXPECT_EQ(dds.Wait(), 1);
+  EXPECT_THAT(dds.err(), HasSubstr("tick 50, the last: agent 2 is lost, and has not answered"));
+  EXPECT_EQ(one.Summary()["ticks"], dds.Summary()["ticks"]);
+}
+
 TEST(Losses, EndTheRunByDefault) {
   ScratchFolder folder;
   WriteFile(folder.File("end.toml"), Ring("duration_s = 3.0", At("0.5", "fault = { agent = 3, kind = 'kill' }")));

@@ -117,7 +117,6 @@ class DdsRun {
   void CheckWire();
   void TellLosses();
   void TellLossBy(const Event& event);
-  std::string WhatFollows() const;
   void StartAfresh();
   void StartAfresh(AgentRange agents, std::int64_t tick);
   void Remind();
@@ -618,20 +617,6 @@ bool DdsRun::HearHosts() try { return launcher_->Pump(); } catch (const std::exc
   return false;
 }
 
-/// What becomes of an agent that is lost, in words.
-std::string DdsRun::WhatFollows() const {
-  const auto& run = experiment_.run;
-  const std::string key = "run.on_agent_loss = \"" + std::string(kOnAgentLoss.Name(run.on_agent_loss)) + "\": ";
-  switch (run.on_agent_loss) {
-    case OnAgentLoss::kHold:
-      return key + "the actuators keep their last values";
-    case OnAgentLoss::kDrop:
-      return key + "the actuators go to zero";
-    default:
-      return key + "a fresh process takes its place after " + ShortestFloat(run.restart_after_s) + " s";
-  }
-}
-
 /// Tells of an agent that hangs, as the physics server has noticed.
 void DdsRun::TellLossBy(const Event& event) {
   if (!event.fault || !event.fault->IsLoss()) return;
@@ -642,7 +627,7 @@ void DdsRun::TellLossBy(const Event& event) {
   if (is_of_file) lost_by_file_.insert(agent);
   if (event.fault->kind == FaultKind::kHang && !is_of_file)
     console_.Line(fmt::format("lost: agent {} hangs: no command within run.agent_timeout_s = {} s\n{}", agent,
-                              ShortestFloat(experiment_.run.agent_timeout_s), WhatFollows()));
+                              ShortestFloat(experiment_.run.agent_timeout_s), WhatFollowsALoss(experiment_)));
 }
 
 /// Tells the physics server which agents have been lost, until an event says so.
@@ -660,7 +645,8 @@ void DdsRun::TellLosses() {
   }
   std::erase_if(losses_, [this](const auto& loss) {
     if (!recorder_->AreLost(loss.first)) return false;
-    if (!lost_by_file_.contains(loss.first.last)) console_.Line("lost: " + loss.second + "\n" + WhatFollows());
+    if (!lost_by_file_.contains(loss.first.last))
+      console_.Line("lost: " + loss.second + "\n" + WhatFollowsALoss(experiment_));
     return true;
   });
   for (const auto& [agents, story] : losses_) links_->Lose(agents);
