@@ -26,6 +26,14 @@ class Ended : public std::exception {
   int signal_;
 };
 
+/// Thrown to end this process: an event of the run kills this process. It leaves the domain first. A process that dies
+/// while it handles a sample leaves its queue in shared memory behind as if it went on: what others send there fills
+/// their memory, until they drop samples.
+class KilledByEvent : public std::exception {
+ public:
+  const char* what() const noexcept override { return "killed by an event of the run"; }
+};
+
 /// How far a run has come, as the physics server reports it.
 struct RunProgress {
   std::int64_t tick = 0;          ///< the newest tick that is published

@@ -37,6 +37,7 @@ namespace mascot {
 namespace {
 
 constexpr auto kTimeToLeave = std::chrono::seconds(5);
+constexpr int kKilled = 128 + SIGKILL;  // exit code after KilledByEvent, if this process does not end by itself
 constexpr auto kTimeToReport = std::chrono::seconds(3);  // see Lifecycle::SetFinal()
 
 /// "3" or "1-50".
@@ -253,6 +254,8 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
     role->Run();
   } catch (const Ended& ended) {
     code = ended.signal() == 0 ? 0 : 128 + ended.signal();
+  } catch (const KilledByEvent&) {
+    code = kKilled;
   } catch (const NotAwaited& refusal) {
     std::cerr << "error: " << refusal.what() << std::endl;
     code = 2;
@@ -334,7 +337,9 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
     if (args.parent == 0) RequireResources({.shared_memory = SharedMemoryNeeded(args.options)});  // else it was asked
     if (args.IsByHand() && args.options.credentials == nullptr)
       if (const auto code = RefuseIfNotAwaited(args, stop)) return *code;
-    return Join(args, stop, make_role);
+    const int code = Join(args, stop, make_role);
+    if (code == kKilled) raise(SIGKILL);
+    return code;
   } catch (const std::invalid_argument& usage) {
     std::cerr << "error: " << usage.what() << std::endl;
     return 2;

@@ -40,7 +40,7 @@ struct ProcessArgs {
 class Role {
  public:
   virtual ~Role() = default;
-  /// Returns only by an exception, such as Ended.
+  /// Returns only by an exception, such as Ended or KilledByEvent.
   [[noreturn]] virtual void Run() = 0;
 };
 using RoleFactory = std::function<std::unique_ptr<Role>(Domain&, Lifecycle&, const mascot_msgs::msg::Experiment&)>;
@@ -48,7 +48,7 @@ using RoleFactory = std::function<std::unique_ptr<Role>(Domain&, Lifecycle&, con
 /// The common `main` of the physics server and the agents: parses the command line, joins the domain, waits for the
 /// experiment, runs the role that `make_role` makes, publishes and prints a failure, and leaves, by force if the DDS
 /// library does not end within 5 s. Returns the exit code: 0 ended by the run, 1 failed, 2 wrong usage, 128 + signal
-/// (130, 143) ended by a signal.
+/// (130, 143) ended by a signal. After KilledByEvent, SIGKILL ends the process instead.
 int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSignal& stop,
                 const RoleFactory& make_role);
 

@@ -1,6 +1,5 @@
 #include "agent/process/node.h"
 
-#include <csignal>
 #include <utility>
 
 #include "agent/laws/laws.h"
@@ -44,22 +43,30 @@ void Node::OnEvent(const mascot_msgs::msg::Event& event) {
   const Event taken = FromWire(event, experiment_.size(), number, experiment_.ticks());
   const auto& now = live_.After(taken);
   agents_->OnEvent(number, taken, now);
-  if (taken.fault && taken.fault->kind == FaultKind::kKill) DieIfKilled(*now);
+  if (taken.fault && taken.fault->kind == FaultKind::kKill && AreKilled(*now)) {
+    is_killed_ = true;
+    lifecycle_.Wake();
+  }
 }
 
-void Node::DieIfKilled(const Experiment& now) const {
+bool Node::AreKilled(const Experiment& now) const {
   for (int id = ids_.first; id <= ids_.last; ++id)
-    if (const AgentFaults& faults = now.agent(id).faults; !faults.is_lost() || faults.hangs) return;
-  raise(SIGKILL);
+    if (const AgentFaults& faults = now.agent(id).faults; !faults.is_lost() || faults.hangs) return false;
+  return true;
+}
+
+void Node::Wait(std::chrono::nanoseconds timeout) {
+  lifecycle_.Wait(timeout);
+  if (is_killed_) throw KilledByEvent();
 }
 
 void Node::Run() {
   lifecycle_.Set(Life::kMatching);
-  while (!Matched()) lifecycle_.Wait(50ms);
+  while (!Matched()) Wait(50ms);
   lifecycle_.Set(Life::kReady);
-  while (!agents_->HaveAnswered()) lifecycle_.Wait(1s);
+  while (!agents_->HaveAnswered()) Wait(1s);
   lifecycle_.Set(Life::kRunning);
-  for (;;) lifecycle_.Wait(1s);
+  for (;;) Wait(1s);
 }
 
 }  // namespace mascot
