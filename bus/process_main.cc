@@ -220,10 +220,17 @@ ProcessKey KeyOfOrchestrator(const ProcessArgs& args) {
   return orchestrator != 0 ? ProcessKey::WithPid(orchestrator) : ProcessKey::Anybody();
 }
 
+/// Throws std::invalid_argument if there are none that this process may use.
+std::shared_ptr<const Credentials> CredentialsIn(const std::string& file) try {
+  return std::make_shared<const Credentials>(ReadCredentials(file));
+} catch (const std::runtime_error& wrong) {
+  throw std::invalid_argument(std::string("--credentials: ") + wrong.what());
+}
+
 /// Reads the credentials. Whoever has started this process for a run has made the file for it alone: it goes.
 void TakeCredentials(ProcessArgs& args) {
   if (args.credentials_file.empty()) return;
-  auto credentials = std::make_shared<const Credentials>(ReadCredentials(args.credentials_file));
+  auto credentials = CredentialsIn(args.credentials_file);
   if (args.parent != 0) std::filesystem::remove(args.credentials_file);
   if (credentials->process != args.options.name)
     throw std::invalid_argument("--credentials: expected those of " + args.options.name + ", got those of " +

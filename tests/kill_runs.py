@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""kill_runs.py [--kills N] [--seed S] [--span S] [--programs DIR]: what do runs leave behind when they are killed?
+"""kill_runs.py [--kills N] [--seed S] [--span S] [--programs DIR] [--set KEY=VALUE]...: what do runs leave behind when they
+are killed?
 
 Kills (SIGKILL) one process of a run over DDS, at a random moment, N times, and counts what is left behind: processes,
-files in /dev/shm, locks of domains. Not part of the tests: 200 kills take several minutes. Needs root: it works in
-namespaces of its own, with processes and a /dev/shm of its own.
+files in /dev/shm, locks of domains, files with private keys. Not part of the tests: 200 kills take several minutes.
+Needs root: it works in namespaces of its own, with processes and a /dev/shm of its own.
 
 The process is the orchestrator, the physics server, an agent or the janitor, each as likely. A run is killed from its
 first moment to its last, and sometimes just after it has ended.
@@ -34,6 +35,7 @@ def arguments():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--span", type=float, default=1.5, help="kill within so many seconds of the start")
     parser.add_argument("--programs", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--set", action="append", default=[], dest="sets", metavar="KEY=VALUE", help="of each run")
     return parser.parse_args()
 
 
@@ -59,16 +61,28 @@ def locked_domains():
     return sorted({word[-1] for word in words if word[-1].startswith("@mascot-domain-")})
 
 
-def kill_one(dice, span, programs):
+def key_files():
+    """Names of the files with private keys (network.security) in the folder for temporary files."""
+    found = []
+    for path in pathlib.Path(tempfile.gettempdir()).rglob("*"):
+        try:
+            if path.is_file() and b"PRIVATE KEY" in path.read_bytes():
+                found.append(path.name)
+        except OSError:  # it has just gone
+            continue
+    return sorted(found)
+
+
+def kill_one(dice, args):
     """Kills a process of a run. Returns its name."""
     folder = tempfile.mkdtemp(prefix="mascot-kill-")
     up = subprocess.Popen(
-        [programs / "orchestrator", "up", CONFIG, "--out", folder + "/run", "--quiet", "--duration-s", "12"]
-        + ["--set", "output.save_plot=false"],
+        [args.programs / "orchestrator", "up", CONFIG, "--out", folder + "/run", "--quiet", "--duration-s", "12"]
+        + [word for key in ["output.save_plot=false", *args.sets] for word in ("--set", key)],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
-    time.sleep(dice.uniform(0, span))
+    time.sleep(dice.uniform(0, args.span))
     alive = processes()
     names = sorted(set(alive.values()))
     name = dice.choice(names) if names else "nobody"
@@ -88,6 +102,7 @@ def left_now():
         "processes": sorted(processes().values()),
         "files": sorted(path.name for path in SHARED_MEMORY.iterdir()),
         "locks": locked_domains(),
+        "keys": key_files(),
     }
     return {what: names for what, names in left.items() if names}
 
@@ -118,7 +133,7 @@ def main():
     dice = random.Random(args.seed)
     killed, failures = {}, 0
     for number in range(1, args.kills + 1):
-        name = kill_one(dice, args.span, args.programs)
+        name = kill_one(dice, args)
         killed[name] = killed.get(name, 0) + 1
         left = left_behind()
         if left:
