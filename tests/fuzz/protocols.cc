@@ -1,6 +1,7 @@
 // Fuzzer: any order of any events, at the plain objects that take samples from the wire. Their answers must keep the
 // promises of their headers. The first byte chooses the object, the rest is its events.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <span>
@@ -9,6 +10,7 @@
 
 #include "agent/process/tick_inbox.h"
 #include "bus/wire.h"
+#include "experiment/silences.h"
 #include "orchestrator/engines/dds/process_table.h"
 #include "orchestrator/engines/dds/row_window.h"
 #include "orchestrator/engines/dds/run_phases.h"
@@ -75,7 +77,10 @@ void FuzzTickProtocol(Events& events) {
   TickProtocol protocol(rules);
   Time now{};
   std::int64_t tick = 0, published = -1, recorded = 0;
+  std::array<bool, 3> lost{};
+  bool held = false;
   const auto carry_out = [&](const TickProtocol::Actions& actions) {
+    Require(!actions.publish || !held, "published while it was held");
     if (actions.step) Require(++tick <= rules.last_tick, "stepped beyond the last tick");
     if (actions.publish) {
       Require(published == tick - 1, "published a tick twice, or left one out");
@@ -83,23 +88,48 @@ void FuzzTickProtocol(Events& events) {
     }
     Require(protocol.published() == published, "published what it did not ask for");
     Require(published < recorded + rules.recorder_window, "published what the recorder has no room for");
+    Require(protocol.last_whole() == published || protocol.last_whole() == published - 1,
+            "more is unknown than a tick");
   };
   while (events.remaining_bytes() > 0) {
     const bool stop = events.ConsumeProbability<double>() < 0.02;
-    switch (events.ConsumeIntegralInRange<int>(0, 3)) {
+    const int id = events.ConsumeIntegralInRange<int>(1, 3);
+    bool& is_lost = lost[static_cast<std::size_t>(id - 1)];
+    switch (events.ConsumeIntegralInRange<int>(0, 6)) {
       case 0:
         if (published < 0) carry_out(protocol.Start());
+        break;
+      case 4:
+        is_lost = true;
+        carry_out(protocol.Lose(id, events.ConsumeBool()));
+        break;
+      case 5:
+        if (is_lost) protocol.Regain(id);
+        is_lost = false;
+        break;
+      case 6:
+        if (held) {
+          held = false;
+          carry_out(protocol.Release());
+        } else if (published >= 0) {
+          held = true;
+          protocol.Hold();
+        }
         break;
       case 1:
         recorded = events.ConsumeBool() ? published + 1 : recorded;
         carry_out(protocol.OnRecorded(recorded));
         break;
-      case 2:
-        carry_out(protocol.OnCommand(events.ConsumeIntegralInRange<int>(1, 3), SomeTick(events, published), stop));
+      case 2: {
+        const TickProtocol::Actions actions = protocol.OnCommand(id, SomeTick(events, published), stop);
+        Require(!actions.take || !is_lost, "took a command of an agent that is lost");
+        carry_out(actions);
         break;
+      }
       default: {
         Pass(events, now);
         const TickProtocol::Turn turn = protocol.Look(now, stop);
+        for (const int late : turn.late) Require(!lost[static_cast<std::size_t>(late - 1)], "waits for who is lost");
         if (!turn.failure.empty()) return;
         carry_out(turn.actions);
       }
@@ -123,17 +153,48 @@ void FuzzJoinList(Events& events) {
 void FuzzRowWindow(Events& events) {
   const std::vector<Topic> topics = {Topic::Command(1), Topic::State(1), Topic::Message(2), Topic::State(2),
                                      Topic::Clock()};
+  const bool realtime = events.ConsumeBool();
   RowWindow window({.topics = topics,
                     .agents = 2,
                     .last_tick = 50,
-                    .realtime = events.ConsumeBool(),
+                    .realtime = realtime,
                     .ticks = 8,
                     .patience = 4,
-                    .batch = 2});
+                    .batch = 2,
+                    .doubts = events.ConsumeBool()});
   std::vector<std::int64_t> sequences(topics.size(), 0);
+  std::int64_t event_tick = 0, event_sequence = 0;
+  Silences silences;
   Row row(2);
+  const auto lose_or_regain = [&] {
+    const int agent = events.ConsumeIntegralInRange<int>(1, 2);
+    if (events.ConsumeBool()) return window.Doubt(agent);
+    event_tick = std::max(event_tick, SomeTick(events, window.rows()));
+    Event event{.tick = event_tick};
+    if (events.ConsumeBool())
+      event.restart = agent;
+    else
+      event.fault = Fault{.agent = agent, .kind = FaultKind::kKill, .unanswered = events.ConsumeBool()};
+    window.TakeEvent(event, std::vector<std::uint8_t>(3), ++event_sequence);
+    silences.Take(event);
+    Require(window.IsLost(agent) == silences.Has(agent, 50), "does not know who is lost");
+  };
+  const auto judge = [&] {
+    for (const Topic& topic : topics) {
+      if (topic.kind != TopicKind::kCommand && topic.kind != TopicKind::kMessage) continue;
+      const bool is_silent = silences.Has(topic.agent, row.tick);
+      const auto& samples = topic.kind == TopicKind::kCommand ? row.commands : row.messages;
+      const bool is_there = !samples[static_cast<std::size_t>(topic.agent - 1)].empty();
+      Require(!is_silent || !is_there, "an answer of an agent that is lost");
+      Require(is_silent || is_there || realtime, "a row without an answer");
+    }
+  };
   try {
     while (events.remaining_bytes() > 0) {
+      if (events.ConsumeProbability<double>() < 0.2) {
+        lose_or_regain();
+        continue;
+      }
       const auto index = events.ConsumeIntegralInRange<std::size_t>(0, topics.size() - 1);
       const std::int64_t sequence = events.ConsumeProbability<double>() < 0.95
                                         ? ++sequences[index]
@@ -141,7 +202,9 @@ void FuzzRowWindow(Events& events) {
       window.Take(index, std::max<std::int64_t>(SomeTick(events, window.rows()), 0), std::vector<std::uint8_t>(3),
                   sequence);
       const std::int64_t rows = window.rows();
-      if (window.Next(events.ConsumeBool(), row)) Require(row.tick == rows && window.rows() == rows + 1, "a row twice");
+      if (!window.Next(events.ConsumeBool(), row)) continue;
+      Require(row.tick == rows && window.rows() == rows + 1, "a row twice");
+      judge();
     }
   } catch (const std::runtime_error&) {  // a sample is missing, or too far ahead
   }
