@@ -29,7 +29,7 @@ def skip(why):
 
 class Bits(unittest.TestCase):
     def test_are_the_same_on_aarch64(self):
-        ours = subprocess.run([HERE / "bits"], capture_output=True, text=True, check=True).stdout
+        ours = subprocess.run([HERE / "bits"], capture_output=True, text=True, check=True, timeout=LIMIT_S).stdout
         theirs = arm64("bits")
         self.assertEqual(theirs.returncode, 0, theirs.stderr)
         self.assertEqual(len(ours.splitlines()), 9)
@@ -42,7 +42,8 @@ class OperationsThatRoundOnce(unittest.TestCase):
             source, program = pathlib.Path(folder) / "fused.cc", pathlib.Path(folder) / "fused.o"
             source.write_text("double Sum(double a, double b, double c) { return a * b + c; }\n")
             for options, expected in {"": ["fmadd"], "-ffp-contract=off": []}.items():
-                subprocess.run(["aarch64-linux-gnu-g++", "-O2", *options.split(), "-c", source, "-o", program], check=True)
+                subprocess.run(["aarch64-linux-gnu-g++", "-O2", *options.split(), "-c", source, "-o", program], check=True,
+                               timeout=LIMIT_S)
                 found = [line.split()[1] for line in arm64("fused", program).stdout.splitlines()]
                 self.assertEqual(found, expected, options)
 
