@@ -92,12 +92,17 @@ void Player::Join() {
   peers_.Know(kPhysicsServer, ours);
   for (const AgentConfig& agent : experiment_.agents)
     if (agent.id != agent_) peers_.Know(ProcessName({agent.id, agent.id}), ours);
-  if (!program_.is_plain()) peers_.Await(process_, ProcessKey());  // its process id is the business of the program around it
+  if (!program_.is_plain())
+    peers_.Await(process_, ProcessKey());  // its process id is the business of the program around it
   links_.emplace(
       *domain_, peers_, experiment_,
       LogFile(logs_folder_.path() / "orchestrator.log", [this](const std::string& words) { console_.Warning(words); }),
       [this] { stop_.Wake(); });
   events_.emplace(*domain_, Topic::Event());
+}
+
+void Player::Connect() {
+  delivery_.reset();
   delivery_ = MakeReplayDelivery(*domain_, experiment_, agent_, [this](const ReplayDelivery::Answer& answer) {
     {
       const std::lock_guard lock(mutex_);
@@ -140,6 +145,7 @@ void Player::Begin(std::int64_t tick) {
     const std::lock_guard lock(mutex_);
     answer_.reset();
   }
+  Connect();
   Spawn(tick);
   if (tick > 0) {
     links_->HandOutExperiment(tick, life_.EventsBefore(tick));

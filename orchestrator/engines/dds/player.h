@@ -68,6 +68,8 @@ class Player {
   using Clock = std::chrono::steady_clock;
 
   void Join();
+  /// Makes readers and writers for the newest process of the agent, in place of those for the one before.
+  void Connect();
   void PlayTicks();
   void Begin(std::int64_t tick);
   void Lose(std::int64_t tick);

@@ -43,6 +43,7 @@ void RowPlayer::Join() {
   options.domain = own_domain_->domain();
   options.transport = options_.transport;
   options.name = "replay";
+  options.loopback = true;  // as a run on this host
   options.participants = 8;
   RequireAddresses(options);
   RequireResources({.shared_memory = SharedMemoryNeeded(options)});
