@@ -96,6 +96,7 @@ void Peers::Take(Entry& entry, const GuidPrefix& participant) {
     ++version_;
   }
   entry.key = ProcessKey::Of(participant);
+  entry.newest = participant;
 }
 
 std::string Peers::Claim(const GuidPrefix& participant, const std::string& name) {
@@ -129,6 +130,12 @@ void Peers::Vacate(const std::string& process) {
   if (entry == entries_.end()) return;
   *entry = {.process = process, .key = {}, .free = ProcessKey()};
   ++version_;
+}
+
+std::optional<Peers::GuidPrefix> Peers::ParticipantOf(const std::string& process) const {
+  const std::lock_guard lock(mutex_);
+  const auto entry = std::ranges::find(entries_, process, &Entry::process);
+  return entry == entries_.end() ? std::nullopt : entry->newest;
 }
 
 std::string Peers::ProcessOf(const GuidPrefix& participant) const {

@@ -17,6 +17,7 @@
 
 #include "bus/leave.h"
 #include "bus/lifecycle.h"
+#include "bus/obituary.h"
 #include "bus/wire.h"
 #include "idl/schemas.h"
 #include "orchestrator/engines/dds/machine/domain_lock.h"
@@ -241,6 +242,18 @@ TEST_F(Bus, ADomainCountsTheParticipantsThatItHasDiscovered) {
     ASSERT_TRUE(Until([&] { return domain.discovered() == 3; })) << domain.discovered();
   }
   EXPECT_TRUE(Until([&] { return domain.discovered() == 2; })) << domain.discovered();
+}
+
+TEST_F(Bus, WhoIsSaidToHaveGoneIsNoReaderAnyMore) {
+  Domain dead(Options("dead"), [] {});
+  const RawWriter writer(here_, Topic::Event());
+  const RawReader reader(dead, Topic::Event(), [](const RawReader::Bytes&, const Sender&) {});
+  ASSERT_TRUE(Until([&] { return writer.matched() == 1; }));
+  // The participant lives, and says so again: it is gone for a moment.
+  ASSERT_TRUE(Until([&] {
+    SayFarewellFor(dead.guid_prefix(), lock_.domain());
+    return writer.matched() == 0;
+  }));
 }
 
 TEST_F(Bus, AWriterCountsTheProcessesOfTheRunThatHearIt) {

@@ -106,6 +106,13 @@ TEST_F(PeersTest, OneParticipantMayHaveThePlacesOfSeveralProcesses) {
   EXPECT_THAT(peers_.ProcessesOf(ParticipantOf(1, 999)), ElementsAre());
 }
 
+TEST_F(PeersTest, KnowTheParticipantThatHasTakenAPlaceLast) {
+  EXPECT_EQ(peers_.ParticipantOf("agent_1"), std::nullopt);
+  peers_.Claim(ParticipantOf(1, 101), "agent_1");
+  EXPECT_EQ(peers_.ParticipantOf("agent_1"), ParticipantOf(1, 101));
+  EXPECT_EQ(peers_.ParticipantOf("agent_9"), std::nullopt);
+}
+
 TEST_F(PeersTest, InARunAParticipantHasOnePlaceAlsoIfProcessIdsLookTheSame) {
   peers_.Know("agent_3", ProcessKey::WithPid(101 + 65536));  // of the id, DDS says the lower half
   EXPECT_THAT(peers_.ProcessesOf(ParticipantOf(1, 101)), testing::SizeIs(1));

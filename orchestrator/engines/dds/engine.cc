@@ -21,6 +21,7 @@
 #include "bus/addresses.h"
 #include "bus/bus.h"
 #include "bus/leave.h"
+#include "bus/obituary.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "experiment/processes.h"
@@ -117,6 +118,7 @@ class DdsRun {
   void CheckWire();
   void TellLosses();
   void TellLossBy(const Event& event);
+  void SayFarewell(const std::string& process) const;
   void StartAfresh();
   void StartAfresh(AgentRange agents, std::int64_t tick);
   void Remind();
@@ -630,10 +632,17 @@ void DdsRun::TellLossBy(const Event& event) {
                               ShortestFloat(experiment_.run.agent_timeout_s), WhatFollowsALoss(experiment_)));
 }
 
+/// A process of this machine has died, perhaps without leaving the domain.
+void DdsRun::SayFarewell(const std::string& process) const {
+  const auto participant = peers_.ParticipantOf(process);
+  if (participant && HostOf(process).empty()) SayFarewellFor(*participant, lock_->domain());
+}
+
 /// Tells the physics server which agents have been lost, until an event says so.
 void DdsRun::TellLosses() {
   for (const auto& [process, story] : phases_.TakeLosses()) {
     const AgentRange agents = *AgentsOf(process);
+    SayFarewell(process);
     started_[agents].runs = false;                                    // if it is awaited, another one has to be started
     if (recorder_->AreLost(agents)) continue;                         // by an event, which has ended the process
     if (!experiment_.network.is_bundled()) recorder_->Doubt(agents);  // else the server says what has been answered
@@ -672,6 +681,7 @@ void DdsRun::StartAfresh() {
   if (std::cmp_less(events.size(), server->events())) return;
   for (const AgentRange& agents : awaited) {
     children_.Kill(ProcessName(agents));
+    SayFarewell(ProcessName(agents));
     audit_.OnEnd(ProcessName(agents));
   }
   links_->HandOutExperiment(tick, std::move(events));
