@@ -128,7 +128,7 @@ std::string WireAudit::ViolationOf(const Guid& guid, const Endpoint& endpoint) c
     if (exist && !MayHave(experiment_, *agents, topic, reads)) return what + ", which the graph does not let it";
   }
   if (reads) return {};
-  const auto may_write = [&](const std::string& one) { return MayWrite(one, topic); };
+  const auto may_write = [&](const std::string& one) { return MayWrite(one, endpoint.topic); };
   if (!is_ours || !(may_write(process) || std::ranges::any_of(peers_.ProcessesOf(guid.guidPrefix), may_write)))
     return WrongWriter(endpoint);
   const bool twice = HasOneWriter(topic) && std::ranges::any_of(endpoints_, [&](const auto& other) {
