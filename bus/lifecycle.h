@@ -26,9 +26,8 @@ class Ended : public std::exception {
   int signal_;
 };
 
-/// Thrown to end this process: an event of the run kills this process. It leaves the domain first. A process that dies
-/// while it handles a sample leaves its queue in shared memory behind as if it went on: what others send there fills
-/// their memory, until they drop samples.
+/// Thrown to end this process because an event of the run kills its agents. The process leaves the domain before it
+/// dies: see SayFarewellFor().
 class KilledByEvent : public std::exception {
  public:
   const char* what() const noexcept override { return "killed by an event of the run"; }

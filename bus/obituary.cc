@@ -2,29 +2,29 @@
 
 #include <arpa/inet.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <initializer_list>
 #include <iterator>
+#include <vector>
 
 #include "bus/ports.h"
 #include "bus/qos.h"
+#include "system/descriptor.h"
 
 namespace mascot {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr int kNumbers = 120;  // of participants of a domain, which have ports of their own
-
 void Add(Bytes& message, std::initializer_list<int> bytes) {
   std::ranges::transform(bytes, std::back_inserter(message), [](int byte) { return static_cast<std::uint8_t>(byte); });
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> FarewellOf(const ProcessKey::GuidPrefix& participant) {
+/// What a participant sends to the others when it leaves: a message of RTPS 2.3 with a sample of SPDP (8.5.3), disposed
+/// and unregistered.
+Bytes FarewellOf(const ProcessKey::GuidPrefix& participant) {
   Bytes message;
   const auto add_prefix = [&] { message.insert(message.end(), participant.value, participant.value + 12); };
   Add(message, {'R', 'T', 'P', 'S', 2, 3, 1, 15});
@@ -41,23 +41,23 @@ std::vector<std::uint8_t> FarewellOf(const ProcessKey::GuidPrefix& participant) 
   return message;
 }
 
+}  // namespace
+
 void SayFarewellFor(const ProcessKey::GuidPrefix& participant, int domain) {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (socket < 0) return;
+  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const Bytes message = FarewellOf(participant);
   const auto send = [&](std::uint32_t address, int port) {
     sockaddr_in to{};
     to.sin_family = AF_INET;
     to.sin_port = htons(static_cast<std::uint16_t>(port));
     to.sin_addr.s_addr = htonl(address);
-    ::sendto(socket, message.data(), message.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+    ::sendto(socket.number(), message.data(), message.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
   };
   const in_addr loopback{htonl(INADDR_LOOPBACK)};
-  ::setsockopt(socket, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback);
+  ::setsockopt(socket.number(), IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback);
   constexpr std::uint32_t kEverybody = 0xefff0001;  // 239.255.0.1
   send(kEverybody, FirstPort(domain));
-  for (int number = 0; number < kNumbers; ++number) send(INADDR_LOOPBACK, DiscoveryPort(domain, number));
-  ::close(socket);
+  for (int number = 0; number < kParticipantsPerDomain; ++number) send(INADDR_LOOPBACK, DiscoveryPort(domain, number));
 }
 
 }  // namespace mascot

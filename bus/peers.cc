@@ -91,12 +91,10 @@ void Peers::Await(const std::string& process, const ProcessKey& key) {
 }
 
 void Peers::Take(Entry& entry, const GuidPrefix& participant) {
-  if (entry.free && !entry.key.IsExact()) {
-    entry.claimant = participant;
-    ++version_;
-  }
+  const bool is_first = !entry.key.IsExact();
+  if (entry.free && is_first) ++version_;
+  if (!entry.free || is_first) entry.participant = participant;
   entry.key = ProcessKey::Of(participant);
-  entry.newest = participant;
 }
 
 std::string Peers::Claim(const GuidPrefix& participant, const std::string& name) {
@@ -117,9 +115,9 @@ std::string Peers::Claim(const GuidPrefix& participant, const std::string& name)
 void Peers::Leave(const GuidPrefix& participant) {
   const std::lock_guard lock(mutex_);
   for (Entry& entry : entries_)
-    if (entry.free && entry.claimant == participant) {
+    if (entry.free && entry.participant == participant) {
       entry.key = *entry.free;
-      entry.claimant = {};
+      entry.participant.reset();
       ++version_;
     }
 }
@@ -135,7 +133,7 @@ void Peers::Vacate(const std::string& process) {
 std::optional<Peers::GuidPrefix> Peers::ParticipantOf(const std::string& process) const {
   const std::lock_guard lock(mutex_);
   const auto entry = std::ranges::find(entries_, process, &Entry::process);
-  return entry == entries_.end() ? std::nullopt : entry->newest;
+  return entry == entries_.end() ? std::nullopt : entry->participant;
 }
 
 std::string Peers::ProcessOf(const GuidPrefix& participant) const {

@@ -54,7 +54,7 @@ class Peers {
   void Leave(const GuidPrefix& participant);
   /// The process has ended: its place is free, for the first participant of its name, as after Await().
   void Vacate(const std::string& process);
-  /// The participant that has taken the place of this process last; nothing: none has.
+  /// The participant that has taken the place of this process; nothing: none has.
   std::optional<GuidPrefix> ParticipantOf(const std::string& process) const;
   /// Name of the process of this participant; empty: it is not of the run.
   std::string ProcessOf(const GuidPrefix& participant) const;
@@ -81,9 +81,9 @@ class Peers {
     /// With network.security, fits all participants that prove by their certificate that they are of the process: its
     /// voice is the first of them alone, but what the others do is its doing, too.
     std::optional<ProcessKey> proof = {};
-    std::optional<ProcessKey> free = {};    // its key while it is free, of a process that is started by hand
-    GuidPrefix claimant = {};               // the participant that took the place of such a process
-    std::optional<GuidPrefix> newest = {};  // the participant that took the place of any
+    std::optional<ProcessKey> free = {};  // its key while it is free, of a process that is started by hand
+    /// That has taken the place: of a process that is started by hand the first, whose leaving frees it; else the last.
+    std::optional<GuidPrefix> participant = {};
   };
   void Add(const std::string& process, const ProcessKey& key, std::optional<ProcessKey> free);
   /// The process of a participant by its certificate alone; empty: none.

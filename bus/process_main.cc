@@ -22,6 +22,7 @@
 
 #include "bus/addresses.h"
 #include "bus/leave.h"
+#include "bus/ports.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "experiment/experiment.h"
@@ -297,11 +298,11 @@ void ProcessArgs::AddTo(CLI::App& app) {
   app.add_option("--participants", options.participants, "How many processes this one talks to, about; sizes buffers")
       ->check(CLI::Range(1, 20000));
   app.add_option("--participant", options.number, "Number of this process among those of its host: its ports")
-      ->check(CLI::Range(0, 119));
+      ->check(CLI::Range(0, kParticipantsPerDomain - 1));
   app.add_option("--peers", options.peers,
                  "Numbers of the processes to announce this one to (default: by multicast, to all)")
       ->delimiter(',')
-      ->check(CLI::Range(0, 119));
+      ->check(CLI::Range(0, kParticipantsPerDomain - 1));
   app.add_option("--peers-at", options.peers_at, "IPv4 address of the host of --peers (default: 127.0.0.1)");
   app.add_option("--awaits", awaited, "How many participants this one waits for before it makes readers and writers")
       ->check(CLI::Range(0, 20000));

@@ -88,7 +88,7 @@ std::shared_ptr<rtps::TransportDescriptorInterface> Udp(const DomainOptions& opt
   // The kernel's default of about 200 KB loses samples when a hundred agents send their commands at once. The kernel
   // grants at most its own limit.
   transport->receiveBufferSize = transport->sendBufferSize = 4 * 1024 * 1024;
-  transport->maxInitialPeersRange = 120;  // number of participants that a domain's ports can hold
+  transport->maxInitialPeersRange = kParticipantsPerDomain;
   return transport;
 }
 

@@ -44,7 +44,7 @@ def started_by_up(event):
 
 
 def agents_of(experiment):
-    return range(1, 1 + (experiment["agents"].get("count") or len(experiment["agents"]["positions_m"])))
+    return range(1, 1 + (experiment["agents"].get("count") or len(experiment["agents"]["position_m"])))
 
 
 def duration_of(experiment):

@@ -11,7 +11,7 @@
 
 namespace mascot {
 
-/// Who hears whom of a team. Vectors by id - 1.
+/// Which agents of a team hear which. The vectors have an entry for each agent, by id - 1.
 struct TeamNetwork {
   std::vector<bool> is_there;             ///< of the team, and not lost
   std::vector<std::vector<int>> hearers;  ///< ids of those that hear this agent
@@ -51,15 +51,17 @@ bool NeedsTree(const Experiment& now);
 /// may begin at any.
 std::vector<int> LeadersOf(const Experiment& now);
 
-/// Who hears whom on `graph`, of the agents that are there (by id - 1), in an experiment that events have changed to
-/// `now`: without edges that are cut or deliver nothing, and without what faults and laws keep agents from hearing.
+/// Which agents hear which on `graph`, in an experiment that events have changed to `now`. `is_there` says, by id - 1,
+/// which agents count. Edges that are cut or deliver nothing are left out, and so is what faults and laws keep agents
+/// from hearing.
 TeamNetwork NetworkOf(const Experiment& now, const Graph& graph, std::vector<bool> is_there);
 /// The agents that hear `from` neither directly nor through others, if the agent `without` (0: none) is not there,
 /// either.
 std::vector<int> NotReachedFrom(std::span<const int> from, const TeamNetwork& network, int without, Budget& budget);
 /// Whether all hear one of `leaders`, or else, if there are none, one and the same agent; without the agent `without`.
 bool HasTree(const TeamNetwork& network, std::span<const int> leaders, int without, Budget& budget);
-/// Those that do not hear the group that most others hear; empty: there is a tree.
+/// The agents that do not hear, directly or through others, the group of agents that most others hear; empty: the
+/// network has a spanning tree.
 std::vector<int> CutOff(const TeamNetwork& network, Budget& budget);
 
 }  // namespace mascot

@@ -302,10 +302,9 @@ TEST_F(OnOtherHosts, AHostThatDiesEndsTheRunAndIsNamed) {
 
 TEST_F(OnOtherHosts, AnAgentThatDiesThereIsNamedWithItsHost) {
   const auto up = FlyForLong();
-  for (const pid_t pid : laboratory_->On(2, "agent --domain")) {
-    SignalTo(pid, SIGKILL);
-    break;
-  }
+  const auto agents = laboratory_->On(2, "agent --id");
+  ASSERT_FALSE(agents.empty());
+  SignalTo(agents.front(), SIGKILL);
   EXPECT_EQ(up->Wait(), 1);
   EXPECT_THAT(up->err(), HasSubstr("was killed by signal 9 (Killed) on lab2"));
   ExpectNothingIsLeft();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <string>
 
@@ -55,6 +56,20 @@ int ParticipantsOfAgents(const Experiment& experiment, AgentRange agents) {
   if (experiment.network.is_bundled())
     return Participants(kTicksInFlight * (kCommandBody * own.size() + MessagesOf(experiment, own)));
   return agents.size() == 1 ? kOthers : static_cast<int>(std::min<std::size_t>(topics, kMaxParticipants));
+}
+
+std::vector<std::string> ArgumentsOf(const Experiment& experiment, int domain, int participants) {
+  return {"--domain",       std::to_string(domain),
+          "--transport",    experiment.network.transport,
+          "--wait-s",       std::to_string(static_cast<int>(experiment.run.start_timeout_s) + 1),
+          "--participants", std::to_string(participants)};
+}
+
+std::vector<std::string> ArgumentsOf(const Experiment& experiment, int domain, AgentRange agents) {
+  std::vector<std::string> arguments{"--id", IdsText(agents)};
+  std::ranges::move(ArgumentsOf(experiment, domain, ParticipantsOfAgents(experiment, agents)),
+                    std::back_inserter(arguments));
+  return arguments;
 }
 
 std::vector<std::string> DeliveryWarnings(const Experiment& experiment) {

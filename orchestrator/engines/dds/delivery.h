@@ -14,6 +14,11 @@ int ParticipantsOfServer(const Experiment& experiment);
 /// The same of a process of agents.
 int ParticipantsOfAgents(const Experiment& experiment, AgentRange agents);
 
+/// Arguments of a process of the run in this domain, wherever it is. `participants`: as above.
+std::vector<std::string> ArgumentsOf(const Experiment& experiment, int domain, int participants);
+/// The same of a process of agents.
+std::vector<std::string> ArgumentsOf(const Experiment& experiment, int domain, AgentRange agents);
+
 /// Warnings ("key: text") about keys of [network] that make a run over DDS slower than it could be.
 std::vector<std::string> DeliveryWarnings(const Experiment& experiment);
 /// Throws ConfigError if the experiment has more agent processes on this host than one DDS domain can hold.

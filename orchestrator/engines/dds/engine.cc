@@ -91,8 +91,6 @@ class DdsRun {
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
   std::uint64_t SharedMemoryOf(const std::string& host) const;
   int ProcessesOn(const std::string& host) const;
-  std::vector<std::string> ArgumentsOf(int participants) const;
-  std::vector<std::string> ArgumentsOf(AgentRange agents) const;
   std::vector<std::string> CredentialsFor(const std::string& process);
   bool MayBeStar() const;
   bool NeedsServer() const;
@@ -394,21 +392,6 @@ std::string DdsRun::PlacedName(const std::string& process) const {
   return host.empty() ? process : process + "@" + host;
 }
 
-/// Arguments of a process that talks to about so many others, wherever it is.
-std::vector<std::string> DdsRun::ArgumentsOf(int participants) const {
-  return {"--domain",       std::to_string(lock_->domain()),
-          "--transport",    experiment_.network.transport,
-          "--wait-s",       std::to_string(static_cast<int>(experiment_.run.start_timeout_s) + 1),
-          "--participants", std::to_string(participants)};
-}
-
-/// The same of a process of agents.
-std::vector<std::string> DdsRun::ArgumentsOf(AgentRange agents) const {
-  std::vector<std::string> arguments = ArgumentsOf(ParticipantsOfAgents(experiment_, agents));
-  arguments.insert(arguments.end(), {"--id", IdsText(agents)});
-  return arguments;
-}
-
 /// With network.security, makes the credentials of a process that is started now. Returns its arguments for them.
 std::vector<std::string> DdsRun::CredentialsFor(const std::string& process) {
   if (!credentials_) return {};
@@ -428,7 +411,7 @@ HostJob DdsRun::JobOf(const HostConfig& host, const std::string& our_address) {
   job.silence_s = std::max(kHostPatience_s, 2 * experiment_.run.agent_timeout_s);
   for (const AgentRange& agents : processes_) {
     if (experiment_.agent(agents.first).host != host.name) continue;
-    std::vector<std::string> arguments = ArgumentsOf(agents);
+    std::vector<std::string> arguments = ArgumentsOf(experiment_, lock_->domain(), agents);
     arguments.insert(arguments.end(), {"--orchestrator", std::to_string(getpid())});
     if (with_server_)
       arguments.insert(arguments.end(), {"--discovery", our_address + ":" + std::to_string(lock_->discovery_port())});
@@ -464,7 +447,8 @@ void DdsRun::Spawn() {
   };
   const pid_t server =
       children_.Spawn(kPhysicsServer, ProgramFolder() / "physics_server",
-                      complete(kPhysicsServer, ArgumentsOf(options.participants), kServersNumber, ProcessesOn("") + 1),
+                      complete(kPhysicsServer, ArgumentsOf(experiment_, options.domain, options.participants),
+                               kServersNumber, ProcessesOn("") + 1),
                       folder_.Log(kPhysicsServer));
   peers_.Know(kPhysicsServer, KeyOf(kPhysicsServer, server));
   std::vector<Children::CopyOf> here;
@@ -473,8 +457,9 @@ void DdsRun::Spawn() {
     const std::string process = ProcessName(agents);
     if (!agent.external && agent.host.empty()) {
       const int number = kFirstAgents + static_cast<int>(here.size());
-      here.push_back(
-          {process, complete(process, ArgumentsOf(agents), number, 2 + MatesOf(agents)), folder_.Log(process)});
+      here.push_back({process,
+                      complete(process, ArgumentsOf(experiment_, options.domain, agents), number, 2 + MatesOf(agents)),
+                      folder_.Log(process)});
       continue;
     }
     if (!agent.external) {

@@ -179,19 +179,9 @@ void Player::AwaitDebugger() {
 
 std::vector<std::string> Player::ArgumentsOf(std::int64_t tick) const {
   const DomainOptions options = Options();
-  std::vector<std::string> arguments{"--id",
-                                     std::to_string(agent_),
-                                     "--domain",
-                                     std::to_string(options.domain),
-                                     "--transport",
-                                     options.transport,
-                                     "--wait-s",
-                                     std::to_string(static_cast<int>(experiment_.run.start_timeout_s) + 1),
-                                     "--participants",
-                                     std::to_string(ParticipantsOfAgents(experiment_, {agent_, agent_})),
-                                     "--loopback",
-                                     program_.is_plain() ? "--parent" : "--orchestrator",
-                                     std::to_string(getpid())};
+  std::vector<std::string> arguments = mascot::ArgumentsOf(experiment_, options.domain, AgentRange{agent_, agent_});
+  arguments.insert(arguments.end(),
+                   {"--loopback", program_.is_plain() ? "--parent" : "--orchestrator", std::to_string(getpid())});
   if (is_star_)
     arguments.insert(arguments.end(), {"--participant", std::to_string(number_), "--peers",
                                        std::to_string(kPlayersNumber), "--awaits", "1"});

@@ -19,8 +19,7 @@ constexpr Mix kMixes[] = {
     {"x86_64", "aarch64", ""},
     {"aarch64", "x86_64",
      "a run on both needs its physics server on x86_64, because Debian's Bullet for aarch64 rounds a * b + c once and "
-     "so "
-     "moves bodies with other bits: start `up` on an x86_64 machine"},
+     "so moves bodies with other bits: start `up` on an x86_64 machine"},
 };
 
 }  // namespace

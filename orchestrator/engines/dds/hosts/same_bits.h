@@ -11,7 +11,8 @@ struct ProgramBuild {
   std::string processor;  ///< ProcessorText(); empty: unknown
 };
 
-/// Of all sources from which this program was compiled, in hexadecimal digits: SHA-256. Equal on all processors.
+/// The SHA-256 of all sources from which this program was compiled, in hexadecimal digits. It is the same on all
+/// processors.
 std::string SourcesText();
 /// The kind of processor that this program is for, as `uname -m` has it: "x86_64", "aarch64". Any other: "other".
 std::string ProcessorText();
