@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -65,7 +66,11 @@ TEST_F(PrivateFolderTest, OfAProcessThatWasKilledIsSwept) {
     folder.Write("x", "");
     pause();
   });
-  test::Await("its folder", [&] { return Count() == 1; });
+  test::Await("its file, which is written once the folder is locked", [&] {
+    const auto folders = fs::directory_iterator(scratch_.path());
+    return std::any_of(begin(folders), end(folders),
+                       [](const auto& folder) { return fs::exists(folder.path() / "x"); });
+  });
   SweepPrivateFolders();
   EXPECT_EQ(Count(), 1) << "it is in use";
   child.Signal(SIGKILL);
