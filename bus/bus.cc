@@ -29,6 +29,10 @@ Handle<Entity> Own(Entity* entity, const std::string& what, std::function<void(E
   return Handle<Entity>(entity, std::move(give_back));
 }
 
+eprosima::fastrtps::Duration_t DurationOf(std::chrono::milliseconds time) {
+  return eprosima::fastrtps::Duration_t(1e-3L * time.count());
+}
+
 /// Intraprocess delivery would call a reader's callback in the thread that writes, with the writer's locks held.
 void DisableIntraprocessDelivery() {
   eprosima::fastrtps::LibrarySettingsAttributes settings;
@@ -77,6 +81,10 @@ Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* 
 }
 
 Domain::~Domain() = default;
+
+void Domain::AwaitReaders(std::chrono::milliseconds timeout) {
+  publisher_->wait_for_acknowledgments(DurationOf(timeout));
+}
 
 int Domain::discovered() const { return discoveries_->participants(); }
 
@@ -199,8 +207,7 @@ int WriterBase::matched() const { return listener_->matched(); }
 bool WriterBase::HasReaderOf(const std::string& process) const { return listener_->HasReaderOf(process); }
 
 bool WriterBase::AwaitReaders(std::chrono::milliseconds timeout) {
-  return writer_->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(1e-3L * timeout.count())) ==
-         ReturnCode_t::RETCODE_OK;
+  return writer_->wait_for_acknowledgments(DurationOf(timeout)) == ReturnCode_t::RETCODE_OK;
 }
 
 void WriterBase::WriteAny(void* sample) {

@@ -64,6 +64,9 @@ class Domain {
   /// Rethrows the first exception given to Fail(), if any.
   void RethrowFailure() const;
   void Wake() const { wake_(); }
+  /// Waits until the readers of all writers of this process have what was written, at most so long. What has not
+  /// arrived when this process leaves the domain is lost, also what already lies in a reader's queue.
+  void AwaitReaders(std::chrono::milliseconds timeout);
   /// How samples come again that are lost between this process and the others.
   Redelivery redelivery() const { return redelivery_; }
   /// The name that DDS has given this participant.

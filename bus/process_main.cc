@@ -38,8 +38,10 @@ namespace mascot {
 namespace {
 
 constexpr auto kTimeToLeave = std::chrono::seconds(5);
-constexpr int kKilled = 128 + SIGKILL;  // exit code after KilledByEvent, if this process does not end by itself
 constexpr auto kTimeToReport = std::chrono::seconds(3);  // see Lifecycle::SetFinal()
+/// For what an agent has written before it is lost. A neighbour that hangs takes nothing.
+constexpr auto kTimeToDeliver = std::chrono::seconds(2);
+constexpr int kKilled = 128 + SIGKILL;  // exit code after KilledByEvent, if this process does not end by itself
 
 /// "3" or "1-50".
 AgentRange ParseIds(const std::string& text) {
@@ -263,13 +265,16 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
   } catch (const Ended& ended) {
     code = ended.signal() == 0 ? 0 : 128 + ended.signal();
   } catch (const KilledByEvent&) {
+    Leave(args, kTimeToDeliver + kTimeToLeave, kKilled);
+    domain.AwaitReaders(kTimeToDeliver);
     code = kKilled;
   } catch (const NotAwaited& refusal) {
     std::cerr << "error: " << refusal.what() << std::endl;
     code = 2;
   } catch (const std::exception& failure) {
-    Leave(args, kTimeToReport + kTimeToLeave, code);
+    Leave(args, kTimeToDeliver + kTimeToReport + kTimeToLeave, code);
     std::cerr << "error: " << InWords(failure) << std::endl;
+    if (args.is_agent) domain.AwaitReaders(kTimeToDeliver);
     lifecycle.SetFinal(Life::kFailed, InWords(failure));
   }
   if (experiment) KillDescendants();  // of laws: without an experiment none has run

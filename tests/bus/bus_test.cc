@@ -512,6 +512,35 @@ TEST_F(Bus, ASampleReachesItsReadersBeforeItsWriterLeaves) {
   }
 }
 
+TEST_F(Bus, AllSamplesReachTheirReadersBeforeAProcessLeaves) {
+  constexpr int kSamples = 50;
+  std::atomic<int> clocks = 0, states = 0;
+  std::atomic<bool> begun = false, goes_on = false;
+  Reader<ClockType> clock(here_, Topic::Clock(), [&](const auto&) {
+    begun = true;
+    goes_on.wait(false);
+    ++clocks;
+  });
+  Reader<StateType> state(there_, Topic::State(1), [&](const auto&) { ++states; });
+  {
+    Domain leaving(Options("leaving"), [] {});
+    Writer<ClockType> writes_clocks(leaving, Topic::Clock());
+    Writer<StateType> writes_states(leaving, Topic::State(1));
+    ASSERT_TRUE(Until([&] { return writes_clocks.matched() == 1 && writes_states.matched() == 1; }));
+    rosgraph_msgs::msg::Clock tick;
+    mascot_msgs::msg::AgentState motion;
+    for (int k = 0; k < kSamples; ++k) {
+      writes_clocks.Write(tick);
+      writes_states.Write(motion);
+    }
+    ASSERT_TRUE(Until([&] { return begun.load(); }));
+    goes_on = true;
+    goes_on.notify_all();
+    leaving.AwaitReaders(std::chrono::seconds(10));
+  }
+  EXPECT_TRUE(Until([&] { return clocks == kSamples && states == kSamples; })) << clocks << " and " << states;
+}
+
 std::string UserName() {
   const passwd* entry = getpwuid(geteuid());
   return entry != nullptr ? entry->pw_name : std::to_string(geteuid());

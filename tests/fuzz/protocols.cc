@@ -269,6 +269,7 @@ void FuzzRunPhases(Events& events) {
                     .period_s = events.ConsumeBool() ? 0.01 : 0,
                     .violation = [] { return std::string(); },
                     .missing = [] { return std::string("agent_1"); },
+                    .lacking = [] { return std::string("/clock of tick 2"); },
                     .is_loss = [&](const std::string&) { return loses; },
                     .last_lines = [](const std::string&) { return std::vector<std::string>{"its last words"}; }},
                    Time{});

@@ -116,6 +116,7 @@ class DdsRun {
   void CheckWire();
   void TellLosses();
   void TellLossBy(const Event& event);
+  bool HaveHeardAllFrom(AgentRange agents) const;
   void SayFarewell(const std::string& process) const;
   void StartAfresh();
   void StartAfresh(AgentRange agents, std::int64_t tick);
@@ -145,6 +146,8 @@ class DdsRun {
   std::vector<std::pair<AgentRange, std::string>> losses_;     // of which no event tells yet: agents, and what happened
   std::size_t seen_events_ = 0;                                // of those that the recorder has
   std::set<int> lost_by_file_;                                 // agents that an event of the file has lost
+  std::map<int, std::int64_t> lost_at_;                        // agent -> tick of the newest event that has lost it
+  std::vector<std::string> dead_;                              // processes for which to say farewell
   std::map<std::string, std::vector<std::string>> arguments_;  // of the processes of agents on this host
   int next_number_ = kFirstAgents;  // DomainOptions::number of the next process that starts afresh
   bool number_is_used_ = false;     // all numbers have been
@@ -218,6 +221,7 @@ RunPhases::Rules DdsRun::Rules() {
           .period_s = run.mode == Mode::kRealtime ? experiment_.period_s() / run.speed : 0,
           .violation = [this] { return audit_.Violation(); },
           .missing = [this] { return links_->Missing(); },
+          .lacking = [this] { return recorder_->Lacking(); },
           .is_loss =
               [this](const std::string& process) {
                 return experiment_.run.on_agent_loss != OnAgentLoss::kAbort && AgentsOf(process).has_value();
@@ -610,6 +614,7 @@ void DdsRun::TellLossBy(const Event& event) {
   const bool is_of_file = std::ranges::any_of(
       experiment_.events, [&](const Event& other) { return other.tick == event.tick && other.Toml() == event.Toml(); });
   const int agent = event.fault->agent;
+  lost_at_[agent] = event.tick;
   lost_by_file_.erase(agent);
   if (is_of_file) lost_by_file_.insert(agent);
   if (event.fault->kind == FaultKind::kHang && !is_of_file)
@@ -617,7 +622,15 @@ void DdsRun::TellLossBy(const Event& event) {
                               ShortestFloat(experiment_.run.agent_timeout_s), WhatFollowsALoss(experiment_)));
 }
 
-/// A process of this machine has died, perhaps without leaving the domain.
+/// Whether others have what these agents have sent before they were lost: all have answered the tick of the event.
+bool DdsRun::HaveHeardAllFrom(AgentRange agents) const {
+  for (int id = agents.first; id <= agents.last; ++id)
+    if (const auto lost = lost_at_.find(id); lost == lost_at_.end() || confirmed_ <= lost->second) return false;
+  return true;
+}
+
+/// A process of this machine has died, perhaps without leaving the domain. Whoever hears the farewell drops what the
+/// process has sent and is not taken yet.
 void DdsRun::SayFarewell(const std::string& process) const {
   const auto participant = peers_.ParticipantOf(process);
   if (participant && HostOf(process).empty()) SayFarewellFor(*participant, lock_->domain());
@@ -627,7 +640,7 @@ void DdsRun::SayFarewell(const std::string& process) const {
 void DdsRun::TellLosses() {
   for (const auto& [process, story] : phases_.TakeLosses()) {
     const AgentRange agents = *AgentsOf(process);
-    SayFarewell(process);
+    dead_.push_back(process);
     started_[agents].runs = false;                                    // if it is awaited, another one has to be started
     if (recorder_->AreLost(agents)) continue;                         // by an event, which has ended the process
     if (!experiment_.network.is_bundled()) recorder_->Doubt(agents);  // else the server says what has been answered
@@ -644,6 +657,11 @@ void DdsRun::TellLosses() {
     return true;
   });
   for (const auto& [agents, story] : losses_) links_->Lose(agents);
+  std::erase_if(dead_, [this](const std::string& process) {
+    if (!HaveHeardAllFrom(*AgentsOf(process))) return false;
+    SayFarewell(process);
+    return true;
+  });
 }
 
 /// Starts the processes that the physics server awaits, once all events are known before the tick that they will

@@ -211,6 +211,11 @@ std::int64_t Recorder::Drain(bool give_up) {
   }
 }
 
+std::string Recorder::Lacking() const {
+  const std::lock_guard lock(mutex_);
+  return window_.Lacking();
+}
+
 std::uint64_t Recorder::lost() const {
   const std::lock_guard lock(mutex_);
   return window_.lost();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "bus/bus.h"
@@ -31,6 +32,8 @@ class Recorder {
   void Doubt(AgentRange agents);
   /// Whether all of these agents are lost, as the events so far say.
   bool AreLost(AgentRange agents) const;
+  /// Samples that the next row waits for (RowWindow::Lacking()).
+  std::string Lacking() const;
   /// Number of samples that are known to be missing, or that came too late for their row.
   std::uint64_t lost() const;
   /// Wall-clock time from the first sample to the newest command (s).

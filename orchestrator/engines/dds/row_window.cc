@@ -90,10 +90,13 @@ bool RowWindow::HasStates(const Slot& slot, std::int64_t events_before) const {
 
 bool RowWindow::IsWhole(const Slot& slot) const {
   if (silences_.empty()) return slot.samples == rules_.topics.size();
-  return slot.states == rules_.agents + 1 && std::ranges::all_of(rules_.topics, [&](const Topic& topic) {
-           return topic.traits().rhythm != TopicRhythm::kAnswer || IsSilent(topic, slot.tick) ||
-                  !SampleOf(slot.row, topic).empty();
-         });
+  return slot.states == rules_.agents + 1 &&
+         std::ranges::none_of(rules_.topics, [&](const Topic& topic) { return Lacks(slot, topic); });
+}
+
+bool RowWindow::Lacks(const Slot& slot, const Topic& topic) const {
+  return topic.traits().rhythm == TopicRhythm::kAnswer && !IsSilent(topic, slot.tick) &&
+         SampleOf(slot.row, topic).empty();
 }
 
 bool RowWindow::IsReady(const Slot& slot, bool give_up) {
@@ -105,6 +108,15 @@ bool RowWindow::IsReady(const Slot& slot, bool give_up) {
   if (IsWhole(slot)) return true;
   const bool states_complete = slot.states == rules_.agents + 1;
   return rules_.realtime && states_complete && (give_up || newest_ - slot.tick >= rules_.patience);
+}
+
+std::string RowWindow::Lacking() const {
+  const Slot& slot = slots_[PlaceOf(rows_)];
+  if (slot.tick != rows_) return "";
+  std::string names;
+  for (const Topic& topic : rules_.topics)
+    if (Lacks(slot, topic)) names += (names.empty() ? "" : ", ") + topic.Name();
+  return names.empty() ? "" : fmt::format("{} of tick {}", names, rows_);
 }
 
 bool RowWindow::Next(bool give_up, Row& row) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "experiment/silences.h"
@@ -54,6 +55,10 @@ class RowWindow {
   /// waited `patience` ticks for them, or at all if `give_up`. Returns whether it did.
   bool Next(bool give_up, Row& row);
 
+  /// The commands and messages that the next row lacks, although its tick has begun ("/agent_3/command of tick 50");
+  /// empty: none.
+  std::string Lacking() const;
+
   /// Number of rows taken so far; the next row has this tick.
   std::int64_t rows() const { return rows_; }
   /// Newest tick with a sample; -1 before the first sample.
@@ -71,7 +76,8 @@ class RowWindow {
     Row row;
   };
 
-  Slot& SlotOf(std::int64_t tick) { return slots_[static_cast<std::size_t>(tick) % slots_.size()]; }
+  std::size_t PlaceOf(std::int64_t tick) const { return static_cast<std::size_t>(tick) % slots_.size(); }
+  Slot& SlotOf(std::int64_t tick) { return slots_[PlaceOf(tick)]; }
   /// Clears `slot` for `tick`. Throws std::runtime_error if its row is not taken yet, or `tick` is too far ahead.
   void Begin(Slot& slot, std::int64_t tick) const;
   bool IsReady(const Slot& slot, bool give_up);
@@ -81,6 +87,8 @@ class RowWindow {
   bool HasStates(const Slot& slot, std::int64_t events_before) const;
   /// Whether agents of the topic are lost at `tick`.
   bool IsSilent(const Topic& topic, std::int64_t tick) const;
+  /// Whether the slot waits for the answer of this topic.
+  bool Lacks(const Slot& slot, const Topic& topic) const;
 
   const Rules rules_;
   std::vector<Slot> slots_;

@@ -173,7 +173,9 @@ void RunPhases::LookAtDeadlines(const View& view, Time now) {
   if (phase_ != Phase::kFlying || !watch_.IsOverdue(view.newest_tick + view.rows + view.server_words, now)) return;
   server_silent_ = true;
   const Seconds limit = Seconds(rules_.agent_timeout_s + rules_.period_s) + kGrace;
-  Fail("nothing came from physics_server for " + ShortestFloat(limit.count()) + " s");
+  const std::string lacking = rules_.lacking();
+  Fail("nothing came from physics_server for " + ShortestFloat(limit.count()) + " s" +
+       (lacking.empty() ? "" : ", and the recording waits for " + lacking));
 }
 
 RunPhases::Actions RunPhases::Collected(const View& view, Time now) {

@@ -41,6 +41,7 @@ class RunPhases {
 
     std::function<std::string()> violation;  ///< how the DDS endpoints differ from the graph; empty: they do not
     std::function<std::string()> missing;    ///< what the start still waits for
+    std::function<std::string()> lacking;    ///< what the recording waits for; empty: for nothing but the next tick
     /// Whether the exit of this process is the loss of its agents, with which the run goes on (run.on_agent_loss).
     std::function<bool(const std::string& process)> is_loss;
     /// The last lines that a child printed.

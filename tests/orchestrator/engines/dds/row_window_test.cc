@@ -267,6 +267,19 @@ TEST_F(LostAgentsTest, ADoubtEndsWithTheStatesOfTheNextTick) {
   EXPECT_FALSE(row_.commands[1].empty());
 }
 
+TEST_F(LostAgentsTest, WhatARowWaitsForIsNamed) {
+  EXPECT_EQ(window_.Lacking(), "") << "for its tick";
+  SendAllBut(kCommand2, 0);
+  EXPECT_EQ(window_.Lacking(), "/agent_2/command of tick 0");
+  Lose(1, 1);
+  EXPECT_EQ(window_.Lacking(), "/agent_2/command of tick 0") << "it has answered that tick";
+  Send(kCommand2, 0);
+  EXPECT_EQ(window_.Lacking(), "");
+  ASSERT_TRUE(Next());
+  SendAllBut(kCommand2, 1);
+  EXPECT_EQ(window_.Lacking(), "") << "it is lost";
+}
+
 TEST_F(LostAgentsTest, ARowThatWasTakenWithAnAnswerThatTheServerLacksIsAnError) {
   SendTick(0);
   ASSERT_TRUE(Next());

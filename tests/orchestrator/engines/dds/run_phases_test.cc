@@ -30,6 +30,7 @@ class RunPhasesTest : public testing::Test {
             .period_s = period_s,
             .violation = [this] { return violation_; },
             .missing = [] { return std::string("nothing was heard of agent_2"); },
+            .lacking = [this] { return lacking_; },
             .is_loss = [this](const std::string& process) { return goes_on_ && process != "physics_server"; },
             .last_lines =
                 [this](const std::string& process) {
@@ -61,7 +62,7 @@ class RunPhasesTest : public testing::Test {
     phases_.OnExits({{process, code, text}}, now_);
   }
 
-  std::string violation_;
+  std::string violation_, lacking_;
   bool goes_on_ = false;              // run.on_agent_loss is not "abort"
   std::vector<std::string> printed_;  // by a child that has ended; empty: it has sighed
   RunPhases::Time now_ = RunPhases::Time() + 1h;
@@ -133,6 +134,15 @@ TEST_F(RunPhasesTest, AServerThatSaysNothingForTheAgentTimeoutAndFiveSecondsHasF
   EXPECT_EQ(phases_.failure(), "nothing came from physics_server for 7.0 s");
   EXPECT_EQ(Collect(), Actions()) << "it will not report";
   EXPECT_EQ(phases_.phase(), Phase::kEnding);
+}
+
+TEST_F(RunPhasesTest, WhatTheRecordingLacksIsNamedIfNothingComes) {
+  Fly();
+  lacking_ = "/agent_2/command of tick 7";
+  LookAfter(7s);
+  LookAfter(kInstant);
+  EXPECT_EQ(phases_.failure(),
+            "nothing came from physics_server for 7.0 s, and the recording waits for /agent_2/command of tick 7");
 }
 
 TEST_F(RunPhasesTest, RecordedRowsCountAsProgress) {
