@@ -16,6 +16,8 @@
 #include "experiment/processes.h"
 
 namespace mascot {
+
+using namespace std::chrono_literals;
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
@@ -28,6 +30,9 @@ Handle<Entity> Own(Entity* entity, const std::string& what, std::function<void(E
   if (entity == nullptr) throw BusError("Fast DDS refused to make the " + what);
   return Handle<Entity>(entity, std::move(give_back));
 }
+
+/// Without a new participant. Each time that there is one, all are told that we are there.
+constexpr auto kQuiet = 100ms;
 
 eprosima::fastrtps::Duration_t DurationOf(std::chrono::milliseconds time) {
   return eprosima::fastrtps::Duration_t(1e-3L * time.count());
@@ -63,9 +68,9 @@ Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* 
                dds::DomainParticipantListener* discovery)
     : wake_(std::move(wake)),
       peers_(peers),
+      secure_(options.credentials != nullptr),
       redelivery_(options.loopback ? Redelivery::kSeldom : Redelivery::kOften),
-      discoveries_(
-          std::make_unique<Discoveries>([this] { Wake(); }, discovery, /*secure=*/options.credentials != nullptr)) {
+      discoveries_(std::make_unique<Discoveries>([this] { Wake(); }, discovery, secure_)) {
   DisableIntraprocessDelivery();
   participant_ =
       Own<dds::DomainParticipant>(CreateParticipant(options, discoveries_.get()),
@@ -81,6 +86,30 @@ Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* 
 }
 
 Domain::~Domain() = default;
+
+void Domain::AwaitOthers(int others, bool announces, const std::function<bool(std::chrono::nanoseconds)>& wait) {
+  using Clock = std::chrono::steady_clock;
+  const auto deadline = Clock::now() + 2s + (secure_ ? others * 200ms : 0ms);
+  auto quiet_since = Clock::now();
+  for (std::size_t heard = 0; discovered() < others;) {
+    const auto now = Clock::now();
+    if (now >= deadline) return;
+    const std::size_t heard_before = std::exchange(heard, discoveries_->heard());
+    if (heard != heard_before) quiet_since = now;
+    if (now - quiet_since >= kQuiet) {
+      if (secure_ && announces) Announce();
+      quiet_since = now;
+    }
+    if (!wait(std::min(deadline, quiet_since + kQuiet) - now)) return;
+  }
+}
+
+void Domain::Announce() {
+  dds::DomainParticipantQos qos;
+  participant_->get_qos(qos);
+  qos.user_data().setValue({static_cast<eprosima::fastrtps::rtps::octet>(++announcements_)});  // else it says nothing
+  participant_->set_qos(qos);
+}
 
 void Domain::AwaitReaders(std::chrono::milliseconds timeout) {
   publisher_->wait_for_acknowledgments(DurationOf(timeout));

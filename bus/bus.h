@@ -39,11 +39,6 @@ class BusError : public std::runtime_error {
 template <class Entity>
 using Handle = std::unique_ptr<Entity, std::function<void(Entity*)>>;
 
-/// How long a process waits, before it makes readers and writers, until it has discovered those that it talks to.
-/// Endpoints are told at once to participants that are known; those that come later ask for them, and Fast DDS answers
-/// after 0.1 s, with a heartbeat to all for each.
-inline constexpr std::chrono::seconds kTimeToDiscover(2);
-
 /// A process's participant, publisher and subscriber in the DDS domain of a run. Must outlive every reader and writer
 /// made in it. With credentials, only participants that have authenticated themselves count as discovered.
 class Domain {
@@ -61,6 +56,12 @@ class Domain {
 
   /// Number of other participants that have been discovered and have not gone.
   int discovered() const;
+  /// Waits, before readers and writers are made, until so many others are discovered, at most 2 s, and with credentials
+  /// 0.2 s more for each, because they authenticate each other one by one. Endpoints are told at once to participants
+  /// that are known; those that come later ask for them, and Fast DDS answers each after 0.1 s, and tells all others of
+  /// it. `wait` waits for the time that it is given, or until the domain wakes it; false from it ends all waiting.
+  /// `announces`: others look for this participant, and may have missed its answer (Announce()).
+  void AwaitOthers(int others, bool announces, const std::function<bool(std::chrono::nanoseconds)>& wait);
   /// Rethrows the first exception given to Fail(), if any.
   void RethrowFailure() const;
   void Wake() const { wake_(); }
@@ -77,10 +78,17 @@ class Domain {
  private:
   friend class WriterBase;
   friend class ReaderBase;
+  /// Tells all participants that are known, and those of DomainOptions::peers, that this one is there. Fast DDS does
+  /// so, too: often in the first second, then every 3 s, and in answer to a participant that it hears of. But it
+  /// announces a participant first, and lets it receive then, so that a quick answer is lost
+  /// (RTPSParticipantImpl::enable).
+  void Announce();
   Handle<eprosima::fastdds::dds::Topic> MakeTopic(const Topic& topic, eprosima::fastdds::dds::TypeSupport type);
 
   std::function<void()> wake_;
   Peers* peers_;
+  const bool secure_;
+  std::uint8_t announcements_ = 0;  // by Announce()
   Redelivery redelivery_;
   std::optional<eprosima::fastdds::rtps::Locator> shared_memory_;  // where readers read it; known once there is one
   mutable std::mutex mutex_;

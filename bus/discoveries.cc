@@ -5,9 +5,7 @@
 #include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 
-#include <chrono>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <thread>
 #include <utility>
 
 namespace mascot {
@@ -17,11 +15,6 @@ namespace rtps = eprosima::fastrtps::rtps;
 using Info = rtps::ParticipantDiscoveryInfo;
 
 namespace {
-
-/// How long the other side of a handshake may need from its answer to our announcement until it can take our first
-/// word. What comes before that is lost, and Fast DDS waits a second before it tries again. Usually it needs less than
-/// 1 ms.
-constexpr std::chrono::milliseconds kTimeToGetReady(10);
 
 bool HasGone(const Info& info) {
   return info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT;
@@ -44,20 +37,20 @@ void Discoveries::PassOn(dds::DomainParticipant* participant, Info&& info) {
 void Discoveries::on_participant_discovery(dds::DomainParticipant* participant, Info&& info) {
   if (!secure_) return PassOn(participant, std::move(info));
   const GuidPrefix prefix = info.info.m_guid.guidPrefix;
-  {
-    const std::lock_guard lock(mutex_);
-    if (HasGone(info)) {
-      const auto gone = known_.extract(prefix);
-      if (!gone.empty() && gone.mapped().is_passed_on) PassOn(participant, std::move(info));
-      return;
-    }
-    Known& known = known_[prefix];
-    if (known.data == nullptr) known.data = std::make_unique<rtps::ParticipantProxyData>(info.info);
-    PassOnIfComplete(participant, known);
+  const std::lock_guard lock(mutex_);
+  if (HasGone(info)) {
+    const auto gone = known_.extract(prefix);
+    if (!gone.empty() && gone.mapped().is_passed_on) PassOn(participant, std::move(info));
+    return;
   }
-  // Fast DDS begins the handshake after this call, from the side with the smaller GUID.
-  const bool begins = participant->guid().guidPrefix < prefix;
-  if (begins && info.status == Info::DISCOVERED_PARTICIPANT) std::this_thread::sleep_for(kTimeToGetReady);
+  Known& known = known_[prefix];
+  if (known.data == nullptr) known.data = std::make_unique<rtps::ParticipantProxyData>(info.info);
+  PassOnIfComplete(participant, known);
+}
+
+std::size_t Discoveries::heard() const {
+  const std::lock_guard lock(mutex_);
+  return known_.size();
 }
 
 void Discoveries::onParticipantAuthentication(dds::DomainParticipant* participant,

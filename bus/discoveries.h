@@ -23,6 +23,8 @@ class Discoveries : public eprosima::fastdds::dds::DomainParticipantListener {
   Discoveries& operator=(const Discoveries&) = delete;
 
   int participants() const { return participants_; }
+  /// With security, also those that have not authenticated themselves.
+  std::size_t heard() const;
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;

@@ -32,6 +32,7 @@
 #include "system/left_file.h"
 #include "system/private_folder.h"
 #include "system/spawn.h"
+#include "system/turn.h"
 #include "system/usage.h"
 
 namespace mascot {
@@ -41,6 +42,8 @@ constexpr auto kTimeToLeave = std::chrono::seconds(5);
 constexpr auto kTimeToReport = std::chrono::seconds(3);  // see Lifecycle::SetFinal()
 /// For what an agent has written before it is lost. A neighbour that hangs takes nothing.
 constexpr auto kTimeToDeliver = std::chrono::seconds(2);
+constexpr int kHeads = 2;               // the orchestrator and the physics server
+constexpr int kTurns = 4;               // see JoinDomain()
 constexpr int kKilled = 128 + SIGKILL;  // exit code after KilledByEvent, if this process does not end by itself
 
 /// "3" or "1-50".
@@ -102,15 +105,12 @@ class Refusals {
   const Peers& peers_;
 };
 
-/// Waits until so many participants are discovered, at most kTimeToDiscover. Returns a signal that came, or 0.
-int AwaitParticipants(const Domain& domain, int awaited, StopSignal& stop) {
-  const auto deadline = std::chrono::steady_clock::now() + kTimeToDiscover;
-  while (domain.discovered() < awaited) {
-    const auto left = deadline - std::chrono::steady_clock::now();
-    if (left <= left.zero()) return 0;
-    if (const int signal = stop.Within(left); signal != 0) return signal;
-  }
-  return 0;
+/// Domain::AwaitOthers(); the physics server is looked for. Returns a signal that came, or 0.
+int AwaitOthers(Domain& domain, int others, const ProcessArgs& args, StopSignal& stop) {
+  int signal = 0;
+  domain.AwaitOthers(others, /*announces=*/!args.is_agent,
+                     [&](std::chrono::nanoseconds time) { return (signal = stop.Within(time)) == 0; });
+  return signal;
 }
 
 /// The processes of the run that an experiment names.
@@ -234,7 +234,10 @@ std::shared_ptr<const Credentials> CredentialsIn(const std::string& file) try {
 void TakeCredentials(ProcessArgs& args) {
   if (args.credentials_file.empty()) return;
   auto credentials = CredentialsIn(args.credentials_file);
-  if (args.parent != 0) std::filesystem::remove(args.credentials_file);
+  if (args.parent != 0) {
+    std::filesystem::remove(args.credentials_file);
+    if (args.is_agent) args.turns = std::filesystem::path(args.credentials_file).parent_path();
+  }
   if (credentials->process != args.options.name)
     throw std::invalid_argument("--credentials: expected those of " + args.options.name + ", got those of " +
                                 credentials->process);
@@ -242,17 +245,33 @@ void TakeCredentials(ProcessArgs& args) {
   if (!args.options.peers.empty()) return;
   // Fast DDS may forget a handshake with a participant of which it hears by two ways at once, as by multicast.
   args.options.peers = {kNumberOfOrchestrator, kNumberOfServer};
-  args.awaited = 2;
+  args.awaited = kHeads;
+}
+
+/// Joins the domain, and waits for those that this process needs (ProcessArgs::awaited). With credentials, only kTurns
+/// processes of a host authenticate themselves at a time. Fast DDS 2.9 sends each word of a handshake to all, and says
+/// it again if no answer comes within a second: while it does, it may drop or free another word, in an unguarded moment
+/// (WriterHistory::remove_change_and_reuse). Returns the signal that came first; 0: none.
+int JoinDomain(const ProcessArgs& args, StopSignal& stop, Peers& peers, std::optional<Domain>& domain) {
+  std::optional<Turn> turn;
+  if (!args.turns.empty()) turn.emplace(args.turns / fmt::format("turn_{}", getpid() % kTurns));
+  if (const int signal = stop.Within({}); signal != 0) return signal;
+  domain.emplace(
+      args.options, [&stop] { stop.Wake(); }, &peers);
+  if (turn)  // others of its host, with which it exchanges messages, may wait for a turn
+    if (const int signal = AwaitOthers(*domain, std::min(args.awaited, kHeads), args, stop); signal != 0) return signal;
+  turn.reset();
+  return AwaitOthers(*domain, args.awaited, args, stop);
 }
 
 /// Joins the domain and runs its role. Publishes a failure before it leaves. Returns the exit code.
 int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role) {
   Peers peers;
   peers.Know(kOrchestrator, KeyOfOrchestrator(args));
-  Domain domain(
-      args.options, [&stop] { stop.Wake(); }, &peers);
+  std::optional<Domain> joined;
+  if (const int signal = JoinDomain(args, stop, peers, joined); signal != 0) return 128 + signal;
+  Domain& domain = *joined;
   const Refusals refusals(peers);
-  if (const int signal = AwaitParticipants(domain, args.awaited, stop); signal != 0) return 128 + signal;
   Lifecycle lifecycle(domain, peers, stop, args.options.name, args.agents.size() == 1 ? args.agents.first : 0);
   std::unique_ptr<Role> role;  // destroyed after the exit code is known: that may hang
   std::optional<mascot_msgs::msg::Experiment> experiment;

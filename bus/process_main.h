@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -21,7 +22,7 @@ struct ProcessArgs {
   DomainOptions options;
   AgentRange agents;  ///< the agents of this process; 0..0: none (the physics server)
   int wait_s = 60;    ///< how long to wait for the experiment
-  int awaited = 0;  ///< how many participants to discover before readers and writers are made, at most kTimeToDiscover
+  int awaited = 0;    ///< how many participants to discover before readers and writers are made (Domain::AwaitOthers)
   /// Pid of the process that started this one, which ends with it; 0: this one was started by hand.
   int parent = 0;
   std::int64_t from_tick = 0;  ///< the first tick to answer: 0, or that of a restart
@@ -29,6 +30,8 @@ struct ProcessArgs {
   bool is_agent = false;
   bool no_code = false;          ///< laws of users are refused
   std::string credentials_file;  ///< empty: the run has no network.security
+  /// Where processes that start together take turns at authenticating themselves; empty: this one starts alone.
+  std::filesystem::path turns;
 
   /// Whether somebody has started this agent by hand.
   bool IsByHand() const { return is_agent && parent == 0 && orchestrator == 0; }

@@ -137,6 +137,21 @@ Locator_t NobodyInSharedMemory(int domain) {
   return nobody;
 }
 
+Locator_t UdpLocator(const std::string& address) {
+  Locator_t locator;  // its port: that of this participant's number
+  IPLocator::setIPv4(locator, address);
+  return locator;
+}
+
+/// With credentials, discovery and handshakes come by UDP alone, in one thread. A participant begins a handshake as
+/// soon as it hears of another; if its first word came in another thread, the other might still be busy with
+/// discovering it, and Fast DDS 2.9 drops the word, to say it again a second later.
+void ReceiveDiscoveryInOneThread(dds::DomainParticipantQos& qos, const DomainOptions& options) {
+  auto& locators = qos.wire_protocol().builtin.metatrafficUnicastLocatorList;
+  locators.push_back(UdpLocator("127.0.0.1"));
+  if (!options.loopback) locators.push_back(UdpLocator(options.address.empty() ? "0.0.0.0" : options.address));
+}
+
 void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) {
   auto& builtin = qos.wire_protocol().builtin;
   builtin.mutation_tries = 1000;  // with the default, 100, the 101st participant of a host receives nothing
@@ -249,6 +264,7 @@ dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   if (TransportOf(options).udp || options.role != DiscoveryRole::kPeer)
     qos.transport().user_transports.push_back(Udp(options));
   SetDiscovery(qos, options);
+  if (options.credentials != nullptr && TransportOf(options).udp) ReceiveDiscoveryInOneThread(qos, options);
   if (options.patient) qos.wire_protocol().builtin.discovery_config.leaseDuration = eprosima::fastrtps::c_TimeInfinite;
   return qos;
 }

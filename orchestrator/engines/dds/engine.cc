@@ -275,14 +275,13 @@ void DdsRun::Join() {
   if (ros_ != nullptr) ShowToRos();
 }
 
-/// Waits until all processes of this host are discovered, at most kTimeToDiscover; not for those of which one has
-/// ended.
+/// Waits for all processes of this host (Domain::AwaitOthers()), but not for those of which one has ended.
 void DdsRun::AwaitParticipants() {
-  const auto deadline = WallClock::now() + kTimeToDiscover;
-  while (domain_->discovered() < 1 + ProcessesOn("") && phases_.in_order() && WallClock::now() < deadline) {
-    OnSignal(stop_.Within(deadline - WallClock::now()));
+  domain_->AwaitOthers(1 + ProcessesOn(""), /*announces=*/true, [this](std::chrono::nanoseconds time) {
+    OnSignal(stop_.Within(time));
     Reap();
-  }
+    return phases_.in_order();
+  });
 }
 
 /// With network.security, processes find each other without multicast wherever they are, and in the order of their
