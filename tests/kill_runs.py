@@ -64,12 +64,14 @@ def locked_domains():
 def key_files():
     """Names of the files with private keys (network.security) in the folder for temporary files."""
     found = []
-    for path in pathlib.Path(tempfile.gettempdir()).rglob("*"):
-        try:
-            if path.is_file() and b"PRIVATE KEY" in path.read_bytes():
-                found.append(path.name)
-        except OSError:  # it has just gone
-            continue
+    for folder, _, names in os.walk(tempfile.gettempdir()):  # passes over folders that have just gone
+        for name in names:
+            path = pathlib.Path(folder) / name
+            try:
+                if path.is_file() and b"PRIVATE KEY" in path.read_bytes():
+                    found.append(name)
+            except OSError:  # it has just gone
+                continue
     return sorted(found)
 
 
