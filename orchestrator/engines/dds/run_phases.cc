@@ -120,7 +120,8 @@ void RunPhases::JudgeExits() {
   for (const Exit& exit : std::exchange(exits_, {})) {
     const bool by_the_signal = signal_ != 0 && exit.code == 128 + signal_;
     std::string story = by_the_signal ? "" : StoryOfEnd(exit.process, exit.text, rules_.last_lines(exit.process));
-    if (!by_the_signal && phase_ == Phase::kFlying && rules_.is_loss(exit.process)) {
+    const bool has_begun = phase_ == Phase::kFlying || phase_ == Phase::kDraining;  // and an event may have ended it
+    if (!by_the_signal && has_begun && rules_.is_loss(exit.process)) {
       losses_.emplace_back(exit.process, std::move(story));
       continue;
     }

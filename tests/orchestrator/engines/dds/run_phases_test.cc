@@ -471,6 +471,16 @@ TEST_F(RunPhasesTest, AnAgentThatDiesWhileTheRunIsStoppedIsALossToo) {
   EXPECT_EQ(phases_.TakeLosses().size(), 1U);
 }
 
+TEST_F(RunPhasesTest, AnAgentThatDiesWhileTheLastRowsComeIsNoFailure) {
+  goes_on_ = true;
+  FinishFlight(/*rows=*/9);
+  ASSERT_EQ(phases_.phase(), Phase::kDraining);
+  Exits("agent_2", std::nullopt, "was killed by signal 9 (Killed)");
+  Look();
+  EXPECT_EQ(phases_.failure(), "");
+  EXPECT_EQ(phases_.TakeLosses().size(), 1U);
+}
+
 TEST_F(RunPhasesTest, AnAgentThatDiesBeforeTheFirstTickOrAServerIsAFailure) {
   goes_on_ = true;
   Exits("agent_2", 1, "exited with code 1");
