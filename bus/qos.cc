@@ -143,13 +143,18 @@ Locator_t UdpLocator(const std::string& address) {
   return locator;
 }
 
-/// With credentials, discovery and handshakes come by UDP alone, in one thread. A participant begins a handshake as
-/// soon as it hears of another; if its first word came in another thread, the other might still be busy with
-/// discovering it, and Fast DDS 2.9 drops the word, to say it again a second later.
+/// With credentials, discovery and handshakes among the processes of a run come by UDP alone, in one thread. A
+/// participant begins a handshake as soon as it hears of another; if its first word came in another thread, the other
+/// might still be busy with discovering it, and Fast DDS 2.9 drops the word, to say it again a second later. Whoever
+/// does not know the numbers of a run's processes finds them by multicast, as without credentials.
 void ReceiveDiscoveryInOneThread(dds::DomainParticipantQos& qos, const DomainOptions& options) {
-  auto& locators = qos.wire_protocol().builtin.metatrafficUnicastLocatorList;
+  auto& builtin = qos.wire_protocol().builtin;
+  auto& locators = builtin.metatrafficUnicastLocatorList;
   locators.push_back(UdpLocator("127.0.0.1"));
   if (!options.loopback) locators.push_back(UdpLocator(options.address.empty() ? "0.0.0.0" : options.address));
+  Locator_t multicast = UdpLocator("239.255.0.1");  // the specification of RTPS, 9.6.1.4
+  IPLocator::setPhysicalPort(multicast, static_cast<std::uint16_t>(FirstPort(options.domain)));
+  builtin.metatrafficMulticastLocatorList.push_back(multicast);  // Fast DDS adds none where others are given
 }
 
 void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) {
