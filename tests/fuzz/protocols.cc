@@ -168,7 +168,7 @@ void FuzzRowWindow(Events& events) {
   Row row(2);
   const auto lose_or_regain = [&] {
     const int agent = events.ConsumeIntegralInRange<int>(1, 2);
-    if (events.ConsumeBool()) return window.Doubt(agent);
+    if (events.ConsumeBool()) return window.Settle();
     event_tick = std::max(event_tick, SomeTick(events, window.rows()));
     Event event{.tick = event_tick};
     if (events.ConsumeBool())

@@ -31,10 +31,17 @@ std::size_t MessagesOf(const Experiment& experiment, const std::vector<int>& ids
   return MessageBody(kMaxNumbers) * static_cast<std::size_t>(senders);
 }
 
+/// What the recorder receives in a tick, with network.delivery = "topics": the clock, states, commands and messages.
+std::size_t SamplesOfATick(const Experiment& experiment) {
+  const auto senders = std::ranges::count_if(experiment.agents, &AgentConfig::sends_messages);
+  return 1 + 2 * experiment.agents.size() + static_cast<std::size_t>(senders);
+}
+
 }  // namespace
 
 int ParticipantsOfServer(const Experiment& experiment) {
-  if (!experiment.network.is_bundled()) return experiment.size() + kOthers;
+  if (!experiment.network.is_bundled())
+    return static_cast<int>(std::min(kOthers + SamplesOfATick(experiment), kMaxParticipants));
   std::size_t bytes = 0;
   for (const AgentRange& agents : AgentProcesses(experiment)) {
     const std::vector<int> sources = SourcesOf(experiment, agents);

@@ -640,9 +640,8 @@ void DdsRun::TellLosses() {
   for (const auto& [process, story] : phases_.TakeLosses()) {
     const AgentRange agents = *AgentsOf(process);
     dead_.push_back(process);
-    started_[agents].runs = false;                                    // if it is awaited, another one has to be started
-    if (recorder_->AreLost(agents)) continue;                         // by an event, which has ended the process
-    if (!experiment_.network.is_bundled()) recorder_->Doubt(agents);  // else the server says what has been answered
+    started_[agents].runs = false;             // if it is awaited, another one has to be started
+    if (recorder_->AreLost(agents)) continue;  // by an event, which has ended the process
     losses_.push_back({agents, story});
   }
   for (const mascot_msgs::msg::Event& sample : recorder_->Events(seen_events_)) {
@@ -729,6 +728,7 @@ void DdsRun::CheckWire() {
 RunPhases::View DdsRun::Record() {
   const auto server = links_->StatusOf(kPhysicsServer);  // before draining: all samples up to its tick have been sent
   const bool done = server && static_cast<Life>(server->state()) == Life::kDone;
+  if (done) recorder_->Settle();
   const bool give_up = phases_.gives_up(WallClock::now());
   const std::int64_t rows = recorder_->Drain(give_up);
   if (rows > confirmed_) links_->Confirm(rows);

@@ -45,9 +45,8 @@ RowWindow::Rules WindowRules(const Experiment& experiment) {
                          .patience = kPatience,
                          .batch = kBatch};
   // What is sent in bundles has gone through the server, which leaves out what an event leaves unanswered.
-  rules.doubts = !experiment.network.is_bundled() && std::ranges::any_of(experiment.events, [](const Event& event) {
-    return event.fault && event.fault->unanswered;
-  });
+  rules.doubts =
+      !experiment.network.is_bundled() && !rules.realtime && experiment.run.on_agent_loss != OnAgentLoss::kAbort;
   for (const AgentConfig& agent : experiment.agents) {
     rules.topics.push_back(Topic::State(agent.id));
     rules.topics.push_back(Topic::Command(agent.id));
@@ -186,10 +185,9 @@ std::vector<mascot_msgs::msg::Event> Recorder::Events(std::size_t skip) const {
   return {events_.begin() + static_cast<std::ptrdiff_t>(skip), events_.end()};
 }
 
-void Recorder::Doubt(AgentRange agents) {
+void Recorder::Settle() {
   const std::lock_guard lock(mutex_);
-  for (int id = agents.first; id <= agents.last; ++id)
-    if (!window_.IsLost(id)) window_.Doubt(id);
+  window_.Settle();
 }
 
 bool Recorder::AreLost(AgentRange agents) const {

@@ -28,8 +28,8 @@ class Recorder {
   std::int64_t Drain(bool give_up = false);
   /// The events so far, in order, without the first `skip`.
   std::vector<mascot_msgs::msg::Event> Events(std::size_t skip = 0) const;
-  /// Agents may be lost: from now on rows wait until it is clear what they have answered (RowWindow::Doubt()).
-  void Doubt(AgentRange agents);
+  /// The server has told its last tick (RowWindow::Settle()).
+  void Settle();
   /// Whether all of these agents are lost, as the events so far say.
   bool AreLost(AgentRange agents) const;
   /// Samples that the next row waits for (RowWindow::Lacking()).

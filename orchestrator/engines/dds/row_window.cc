@@ -70,7 +70,6 @@ bool RowWindow::TakeEvent(const Event& event, std::span<const std::uint8_t> byte
                     event.fault->agent, event.tick - 1));
   newest_event_ = sequence;
   silences_.Take(event);
-  if (event.fault && event.fault->IsLoss()) doubted_.erase(event.fault->agent);
   silent_ = silences_.empty() ? 0
                               : static_cast<std::size_t>(std::ranges::count_if(
                                     rules_.topics, [&](const Topic& topic) { return IsSilent(topic, event.tick); }));
@@ -101,7 +100,7 @@ bool RowWindow::Lacks(const Slot& slot, const Topic& topic) const {
 
 bool RowWindow::IsReady(const Slot& slot, bool give_up) {
   if (slot.tick != rows_ || slot.events > events_ + std::ssize(slot.row.events)) return false;
-  if ((rules_.doubts || !doubted_.empty()) && !give_up && slot.tick < rules_.last_tick) {
+  if (rules_.doubts && !settled_ && !give_up && slot.tick < rules_.last_tick) {
     const Slot& next = SlotOf(slot.tick + 1);
     if (next.tick != slot.tick + 1 || !HasStates(next, events_ + std::ssize(slot.row.events))) return false;
   }

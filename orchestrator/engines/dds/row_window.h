@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +28,9 @@ class RowWindow {
     /// In real time: a row that lacks only commands or messages is ready when the newest tick is this far ahead.
     std::int64_t patience = 0;
     std::int64_t batch = 0;  ///< number of complete rows at which the writing thread is woken
-    bool doubts = false;     ///< any agent may be lost at any tick, as after Doubt()
+    /// Agents may be lost at any tick, and what they have sent may have come here, but not to the server: the row of a
+    /// tick is taken only with the states of the next one, which come after the event that says so.
+    bool doubts = false;
   };
   explicit RowWindow(Rules rules);
 
@@ -46,9 +47,8 @@ class RowWindow {
   /// Takes event number `sequence`. Returns and throws as Take() does; throws also if it says that an agent has not
   /// answered a tick whose row, with its answer, was taken.
   bool TakeEvent(const Event& event, std::span<const std::uint8_t> bytes, std::int64_t sequence);
-  /// An agent may be lost: until an event says so, the row of a tick is taken only with the states of the next one,
-  /// which come after that event.
-  void Doubt(int agent) { doubted_.insert(agent); }
+  /// The server has told its last tick: what has been answered until then has reached it.
+  void Settle() { settled_ = true; }
   /// Whether an agent is lost for the time being, as the events so far say.
   bool IsLost(int agent) const { return silences_.Has(agent, rules_.last_tick); }
   /// Swaps the next row into `row` if it is complete; in real time also if it only lacks commands or messages and has
@@ -97,7 +97,7 @@ class RowWindow {
   std::int64_t events_ = 0;  // in rows taken so far
   std::int64_t newest_event_ = 0;
   Silences silences_;
-  std::set<int> doubted_;      // agents
+  bool settled_ = false;
   std::size_t silent_ = 0;     // topics of agents that are lost now
   std::int64_t complete_ = 0;  // rows completed since the last Next()
   std::int64_t newest_ = -1;

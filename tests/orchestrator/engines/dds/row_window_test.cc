@@ -16,22 +16,24 @@ namespace {
 using testing::ThrowsMessage;
 
 constexpr std::size_t kClock = 0, kState1 = 1, kCommand1 = 2, kState2 = 3, kCommand2 = 4;
+constexpr std::int64_t kLastTick = 99;
 
 /// Two agents, ticks 0 to 99, a window of 16 ticks.
-RowWindow::Rules Rules(bool realtime = false) {
+RowWindow::Rules Rules(bool realtime = false, bool doubts = false) {
   return {.topics = {Topic::Clock(), Topic::State(1), Topic::Command(1), Topic::State(2), Topic::Command(2)},
           .agents = 2,
-          .last_tick = 99,
+          .last_tick = kLastTick,
           .realtime = realtime,
           .ticks = 16,
           .patience = 8,
-          .batch = 4};
+          .batch = 4,
+          .doubts = doubts};
 }
 
 /// A window, and the number of samples sent on each topic.
 class RowWindowTest : public testing::Test {
  protected:
-  explicit RowWindowTest(bool realtime = false) : window_(Rules(realtime)), sent_(5, 0) {}
+  explicit RowWindowTest(bool realtime = false, bool doubts = false) : window_(Rules(realtime, doubts)), sent_(5, 0) {}
 
   /// Passes the next sample of a topic; its bytes are tick and topic.
   bool Send(std::size_t topic, std::int64_t tick) {
@@ -204,6 +206,8 @@ TEST_F(RealtimeRowWindowTest, ACommandIsNotTakenForAnotherTicks) {
 
 class LostAgentsTest : public RowWindowTest {
  protected:
+  explicit LostAgentsTest(bool doubts = false) : RowWindowTest(/*realtime=*/false, doubts) {}
+
   /// Event number `number`: agent 2 is lost at `tick`, or comes back.
   void Lose(std::int64_t tick, int number, bool unanswered = false) {
     window_.TakeEvent({.tick = tick, .fault = Fault{.agent = 2, .unanswered = unanswered}}, kBytes, number);
@@ -248,23 +252,45 @@ TEST_F(LostAgentsTest, ARowMayWaitForTheEventOfTheNextTick) {
   EXPECT_TRUE(row_.commands[1].empty());
 }
 
-TEST_F(LostAgentsTest, WhatComesTooLateIsLeftOut) {
-  window_.Doubt(2);
+/// Agents may be lost in reality.
+class DoubtfulAgentsTest : public LostAgentsTest {
+ protected:
+  DoubtfulAgentsTest() : LostAgentsTest(/*doubts=*/true) {}
+};
+
+TEST_F(DoubtfulAgentsTest, WhatComesTooLateIsLeftOut) {
   SendTick(0);
   EXPECT_FALSE(Next()) << "it may be that this command has not reached the server";
   Lose(1, 1, /*unanswered=*/true);
+  SendAllBut(kCommand2, 1, 1);
   ASSERT_TRUE(Next());
   EXPECT_TRUE(row_.commands[1].empty());
 }
 
-TEST_F(LostAgentsTest, ADoubtEndsWithTheStatesOfTheNextTick) {
-  window_.Doubt(2);
+TEST_F(DoubtfulAgentsTest, ARowWaitsForTheStatesOfTheNextTick) {
   SendTick(0);
   EXPECT_FALSE(Next());
   EXPECT_FALSE(Next());
   SendAllBut(kCommand2, 1);
   ASSERT_TRUE(Next());
   EXPECT_FALSE(row_.commands[1].empty());
+}
+
+TEST_F(DoubtfulAgentsTest, TheLastRowWaitsForNothing) {
+  for (std::int64_t tick = 0; tick < kLastTick; ++tick) {
+    SendTick(tick);
+    EXPECT_EQ(Next(), tick > 0);
+  }
+  SendTick(kLastTick);
+  EXPECT_TRUE(Next());
+  EXPECT_TRUE(Next());
+}
+
+TEST_F(DoubtfulAgentsTest, RowsWaitForNothingOnceTheServerHasToldItsLastTick) {
+  SendTick(0);
+  EXPECT_FALSE(Next());
+  window_.Settle();
+  EXPECT_TRUE(Next());
 }
 
 TEST_F(LostAgentsTest, WhatARowWaitsForIsNamed) {
