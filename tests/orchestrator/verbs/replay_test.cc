@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "bus/bus.h"
+#include "bus/cdr.h"
 #include "bus/wire.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "tests/support/edited_recording.h"
@@ -420,13 +421,15 @@ class Ear {
 };
 
 TEST_F(Replay, AListenerHearsExactlyTheRecordedSamples) {
-  const std::string run = Fly(kRing);
+  const std::string run = Fly(kRing, {"--engine", "inprocess", "--set", "record.ros_types=true"});
   const McapContents contents = ReadMcap(run + "/run.mcap");
   std::map<std::string, std::vector<RawReader::Bytes>> recorded;
   ReadMcap(run + "/run.mcap", [&](const McapContents::Message& message) {
-    recorded[contents.channels.at(message.channel).topic].push_back(message.data);
+    auto& samples = recorded[contents.channels.at(message.channel).topic];
+    samples.push_back(message.data);
+    samples.back().resize(PaddedSize(static_cast<std::uint32_t>(message.data.size())));  // of RTPS
   });
-  ASSERT_EQ(recorded.size(), 17u) << "5 of each: state, command, message; and clock, event";
+  ASSERT_EQ(recorded.size(), 24u) << "5 of each: state, command, message, odom; and clock, event, tf, scene";
   std::vector<std::string> words{"replay", run, "--speed", "fastest"};
   for (const auto& [name, samples] : recorded) words.insert(words.end(), {"--wait-for", name});
   Running replay(kReplaying, words, File("replay"));
