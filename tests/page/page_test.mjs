@@ -390,6 +390,8 @@ test("what goes wrong with an agent is chosen from a menu, asked for, and seen",
 
     await choose("[data-fault='agent kill']");
     await until(page, () => document.querySelector("#detail .wrong")?.textContent === "lost");
+    const values = () => page.locator("#detail dd").allTextContents();
+    assert.deepEqual((await values()).slice(3, 5).filter((text) => /\d/.test(text)), [], "it commands nothing");
     await nextPicture(page);
     assert.ok(await isGone(3));
     assert.equal(await page.textContent("#survives"), "agent 3 is lost: the others go on");

@@ -176,17 +176,18 @@ class Detail {
   #fill(selected) {
     const {frame} = this.#model, vector = (name) => this.#model.vector(name, selected).map((x) => fixed(x)).join("  ");
     const actuators = frame.u.slice(4 * selected - 4, 4 * selected);
+    const isLost = this.#model.lost.includes(selected), flags = isLost ? 0 : frame.flags[selected - 1];
     const texts = {
       position: `${vector("p")} m`,
       velocity: `${vector("v")} m/s`,
       attitude: attitude(frame.q.slice(4 * selected - 4, 4 * selected)),
-      commands: `${vector("a")} m/s²`,
-      actuators: actuators.map((x) => fixed(x)).join("  "),
-      limits: limitWords(frame.flags[selected - 1]) || "none reached",
+      commands: isLost ? "none" : `${vector("a")} m/s²`,
+      actuators: isLost ? "none commanded" : actuators.map((x) => fixed(x)).join("  "),
+      limits: isLost ? "–" : limitWords(flags) || "none reached",
     };
     for (const [name, text] of Object.entries(texts)) setText(this.#values[name], text);
     setText(this.#wrong, this.#model.faultsOf(selected).join("; "));
-    this.#values.limits.classList.toggle("warn", frame.flags[selected - 1] !== 0);
+    this.#values.limits.classList.toggle("warn", flags !== 0);
     this.#model.heardBy(selected).forEach((edge, k) => this.#fillHeard(this.#heard[k], edge));
   }
 
