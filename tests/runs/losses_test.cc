@@ -227,6 +227,22 @@ TEST(Losses, AnAgentThatIsStoppedBeyondTheTimeOutHangs) {
   EXPECT_THAT(Verified(up).output, HasSubstr("the same, bit for bit"));
 }
 
+/// Its queue in shared memory looks alive for as long as it counts as a reader.
+TEST(Losses, AProcessThatDiesWhileItHandlesASampleIsInNobodysWay) {
+  ScratchFolder folder;
+  WriteFile(folder.File("law.py"),
+            "import ctypes\ndef control(t, me, neighbours):\n    if me.id == 3 and round(100 * t) == 50:\n"
+            "        ctypes.string_at(0)\n    return [0.0, 0.0, 0.0]\n");
+  WriteFile(folder.File("back.toml"),
+            "[run]\nduration_s = 40.0\non_agent_loss = 'restart'\nrestart_after_s = 0.2\n[agents]\ncount = 6\n[graph]\n"
+            "topology = 'complete'\n[output]\nfidelity = false\n[law]\nname = 'custom'\nfile = '" +
+                folder.File("law.py") + "'\n");
+  Up up(folder, "run", folder.File("back.toml"), {"--engine", "dds"});
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_THAT(up.err(), HasSubstr("lost: agent_3: the law of agent 3 crashed: SIGSEGV"));
+  EXPECT_EQ(up.Summary()["ticks"], 4000);
+}
+
 TEST(Losses, ComeByHandToo) {
   ScratchFolder folder;
   WriteFile(folder.File("endless.toml"), Ring("duration_s = 100000.0\non_agent_loss = 'hold'\npace = 1.0"));
