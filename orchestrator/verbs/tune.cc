@@ -142,11 +142,13 @@ std::function<int()> SetUpTune(CLI::App& command) {
       ->required()
       ->check(CLI::Range(1, 100'000))
       ->type_name("N");
-  command.add_option("--seeds", setting.seeds, "fly each candidate with each of these seeds: A..B or A,B,...")
-      ->type_name("SEEDS");
+  auto* seeds =
+      command.add_option("--seeds", setting.seeds, "fly each candidate with each of these seeds: A..B or A,B,...")
+          ->type_name("SEEDS");
   command.add_option("--over-seeds", args->over_seeds, "what counts of the seeds: mean, median or worst (mean)")
       ->check(OneOf({kOverSeeds.names().begin(), kOverSeeds.names().end()}))
-      ->type_name("HOW");
+      ->type_name("HOW")
+      ->needs(seeds);
   command.add_flag("--maximize", setting.maximize, "the metric shall be largest");
   command
       .add_option("--batch", setting.batch,

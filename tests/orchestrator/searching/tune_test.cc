@@ -161,6 +161,7 @@ TEST_F(TuneTest, RefusesWhatItCannotSearch) {
       {"--metric " + Own() + " --budget 3 --random law.beta=1:2",
        Own() + ": cannot be read: No such file or directory"},
       {"--metric x --budget 0 --random law.beta=1:2", "--budget: Value 0 not in range 1 to 100000"},
+      {words + "--random law.beta=1:2 --over-seeds worst", "--over-seeds requires --seeds"},
   };
   for (const auto& [more, message] : kMistakes) {
     const Ran ran = Tune(more);
