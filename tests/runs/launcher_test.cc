@@ -198,9 +198,10 @@ class OnOtherHosts : public testing::Test {
     return std::make_unique<Running>("ip", words, folder_.File("up"));
   }
   /// A run of agents 1 to 6, of which 1, 2 are on lab1 and 3, 4 on lab2, once it flies.
-  std::unique_ptr<Running> FlyForLong() {
+  std::unique_ptr<Running> FlyForLong(const std::string& on_agent_loss = "abort") {
     Connect();
-    auto up = Fly(Experiment(6, 600, laboratory_->Tables({"1-2", "3-4"})), {"--set", "run.pace=1"});
+    auto up = Fly(Experiment(6, 600, laboratory_->Tables({"1-2", "3-4"})),
+                  {"--set", "run.pace=1", "--set", "run.on_agent_loss=" + on_agent_loss});
     EXPECT_TRUE(Flies(*up)) << up->err();
     return up;
   }
@@ -317,6 +318,31 @@ TEST_F(OnOtherHosts, ACutLinkEndsTheRunOnBothOfItsEnds) {
   EXPECT_THAT(up->err(), HasSubstr("host lab2 has not been heard of for 3 s"));
   ExpectNothingIsLeft();
 }
+
+/// A host is gone: the run goes on without its agents.
+class HostsThatAreGone : public OnOtherHosts, public testing::WithParamInterface<bool> {};
+
+TEST_P(HostsThatAreGone, AreLossesOfTheirAgentsThatFlyAgain) {
+  const bool is_cut = GetParam();
+  const auto up = FlyForLong("hold");
+  if (is_cut)
+    laboratory_->Cut(2);
+  else
+    for (const pid_t pid : laboratory_->On(2, "orchestrator host")) SignalTo(pid, SIGKILL);
+  ASSERT_TRUE(Until([&] { return up->IsOver() || CountOf("lost: agent", up->err()) == 2; })) << up->err();
+  for (const std::string agent : {"agent_3", "agent_4"})
+    EXPECT_THAT(up->err(), HasSubstr("lost: " + agent + " was on host lab2, " +
+                                     (is_cut ? "which has not been heard of for 3 s" : "the connection to which ")));
+  for (const pid_t pid : laboratory_->On(0, "orchestrator up")) SignalTo(pid, SIGINT);
+  EXPECT_EQ(up->Wait(), 130) << up->err();
+  EXPECT_EQ(CountOf("kind = \"kill\"", ReadFile(folder_.File("run/config.toml"))), 2);
+  const Ran verified = Shell("'" MASCOT_BINARY_DIR "/orchestrator' verify '" + folder_.File("run") + "' 2>&1");
+  EXPECT_THAT(verified.output, HasSubstr("the same, bit for bit"));
+  ExpectNothingIsLeft();
+}
+
+INSTANTIATE_TEST_SUITE_P(By, HostsThatAreGone, testing::Bool(),
+                         [](const auto& row) { return row.param ? "ACutLink" : "ADeadProgram"; });
 
 TEST_F(OnOtherHosts, NothingIsLeftOfAnOrchestratorThatIsKilled) {
   const auto up = FlyForLong();

@@ -33,12 +33,6 @@ Ran Verified(const Up& up, const std::string& more = "") {
   return Shell("'" MASCOT_BINARY_DIR "/orchestrator' verify '" + up.path().string() + "' " + more);
 }
 
-std::size_t CountOf(const std::string& words, const std::string& text) {
-  std::size_t count = 0;
-  for (std::size_t at = 0; (at = text.find(words, at)) != std::string::npos; ++at) ++count;
-  return count;
-}
-
 /// How the agents are spread over processes, and what they hear by.
 struct Layout {
   std::string name;

@@ -139,4 +139,11 @@ inline bool Flies(const Running& up) {
   return Until([&] { return up.Said("x real time"); });
 }
 
+/// How often `words` stand in `text`.
+inline std::size_t CountOf(const std::string& words, const std::string& text) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = text.find(words, at)) != std::string::npos; ++at) ++count;
+  return count;
+}
+
 }  // namespace mascot::test

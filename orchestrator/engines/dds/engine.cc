@@ -491,6 +491,11 @@ void DdsRun::Spawn() {
       Launcher::Rules{
           .start_timeout_s = experiment_.run.start_timeout_s,
           .silence_s = std::max(kMinSilence_s, kShareOfTimeout * experiment_.run.agent_timeout_s),
+          .goes_on =
+              [this] {
+                return experiment_.run.on_agent_loss != OnAgentLoss::kAbort && phases_.signal() == 0 &&
+                       phases_.phase() != RunPhases::Phase::kStarting;
+              },
           .job = [this](const HostConfig& host, const std::string& our_address) { return JobOf(host, our_address); }},
       children_, logs_, peers_);
   launcher_->Start();
@@ -593,11 +598,14 @@ void DdsRun::OnSignal(int signal) {
 /// Passes the exits of processes to RunPhases.
 void DdsRun::Reap() {
   std::vector<RunPhases::Exit> exits;
-  for (const Exit& exit : children_.Reap()) exits.push_back({exit.process, exit.code(), exit.Text()});
+  for (const Exit& exit : children_.Reap())
+    if (!launcher_ || !launcher_->OnExit(exit)) exits.push_back({exit.process, exit.code(), exit.Text()});
   if (launcher_) HearHosts();
   if (launcher_)
     for (const Exit& exit : launcher_->Reap())
       exits.push_back({exit.process, exit.code(), exit.Text() + " on " + HostOf(exit.process)});
+  if (launcher_)
+    for (const Launcher::Loss& loss : launcher_->TakeLosses()) exits.push_back({loss.process, {}, loss.text});
   phases_.OnExits(exits, WallClock::now());
 }
 

@@ -76,6 +76,7 @@ struct Launcher::Remote {
   std::map<std::string, Descriptor> logs = {};  // of its processes, until they end: their lines go there
   std::map<std::string, int> pids = {};         // to be compared with the participants that join the run
   std::set<std::string> ended = {};
+  bool lost = false;
 };
 
 Launcher::Launcher(const Experiment& experiment, const RunFolder& folder, Rules rules, Children& children,
@@ -132,18 +133,45 @@ bool Launcher::Pump() {
   return told;
 }
 
-/// Throws std::runtime_error if nothing was heard of a host for too long.
-void Launcher::CheckSilence(const Remote& remote) const {
-  if (ending_) return;
+/// A host of which nothing was heard for too long is lost. Throws std::runtime_error if the run does not go on.
+void Launcher::CheckSilence(Remote& remote) {
+  if (ending_ || remote.lost) return;
   const std::chrono::duration<double> silence = WallClock::now() - remote.heard;
   const double limit_s = remote.greeted ? rules_.silence_s : kShareOfStart * rules_.start_timeout_s;
   if (silence.count() <= limit_s) return;
+  if (remote.greeted && rules_.goes_on()) {
+    Lose(remote, fmt::format("which has not been heard of for {:.3g} s", limit_s));
+    if (!remote.config.together) children_.Kill(remote.connection.name);  // if it hears that, it kills its processes
+    return;
+  }
   throw std::runtime_error(
       remote.greeted
           ? fmt::format("host {} has not been heard of for {:.3g} s", remote.config.name, limit_s)
           : fmt::format("host {} has not answered for {:.3g} s (does its launch command ask for a password?)",
                         remote.config.name, limit_s));
 }
+
+/// `how`: ends "was on host lab2, ...".
+void Launcher::Lose(Remote& remote, const std::string& how) {
+  remote.lost = true;
+  for (auto& [process, log] : remote.logs) {
+    log = Descriptor();
+    if (remote.ended.insert(process).second)
+      losses_.push_back({process, fmt::format("was on host {}, {}", remote.config.name, how)});
+  }
+}
+
+bool Launcher::OnExit(const Exit& exit) {
+  const auto connection =
+      std::ranges::find_if(connections_, [&](const auto& one) { return one->name == exit.process; });
+  if (connection == connections_.end() || ending_ || !rules_.goes_on()) return false;
+  for (const auto& remote : remotes_)
+    if (&remote->connection == connection->get() && !remote->lost)
+      Lose(*remote, "the connection to which " + exit.Text());
+  return true;
+}
+
+std::vector<Launcher::Loss> Launcher::TakeLosses() { return std::exchange(losses_, {}); }
 
 /// Throws std::runtime_error for what is no word of a host of this run.
 void Launcher::Hear(const Connection& connection, const std::string& line) {
@@ -165,7 +193,7 @@ void Launcher::Hear(const Connection& connection, const std::string& line) {
     const auto remote = std::ranges::find_if(remotes_, speaks);
     if (remote == remotes_.end())
       throw std::runtime_error(fmt::format("host {}: expected hosts of the run, got {}", name, Quote(node)));
-    Obey(**remote, *words);
+    if (!(*remote)->lost) Obey(**remote, *words);
   } catch (const JsonError& mistake) {
     throw std::runtime_error(fmt::format("host {}: {}", name, mistake.what()));
   }
@@ -248,7 +276,7 @@ void Launcher::Greet(Remote& remote, const HostHello& hello) {
 
 /// Throws std::runtime_error if a participant that joined as a process of this host is none that the host has started.
 void Launcher::CheckPids(const Remote& remote) const {
-  if (remote.pids.empty() || experiment_.network.is_secure()) return;  // certificates say who is who
+  if (remote.pids.empty() || remote.lost || experiment_.network.is_secure()) return;  // certificates say who is who
   for (const auto& [process, key] : peers_.Places()) {
     const auto pid = remote.pids.find(process);
     if (pid != remote.pids.end() && key.IsExact() && !ProcessKey::WithPid(pid->second).Fits(key))
@@ -268,7 +296,7 @@ void Launcher::Kill() { TellAll({{"kind", "kill"}}); }
 bool Launcher::End() {
   ending_ = true;
   TellAll({{"kind", "end"}});
-  return std::ranges::any_of(remotes_, [](const auto& remote) { return remote->greeted; });
+  return std::ranges::any_of(remotes_, [](const auto& remote) { return remote->greeted && !remote->lost; });
 }
 
 }  // namespace mascot

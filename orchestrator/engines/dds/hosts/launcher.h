@@ -27,8 +27,16 @@ class Launcher {
   struct Rules {
     double start_timeout_s = 0;
     double silence_s = 0;  ///< a host from which nothing is heard for this time is lost
+    /// Whether the run goes on without a host that is lost: its processes are lost then (TakeLosses()).
+    std::function<bool()> goes_on = [] { return false; };
     /// What a host shall do. `our_address` is the address at which it reaches this machine.
     std::function<HostJob(const HostConfig& host, const std::string& our_address)> job;
+  };
+
+  /// A process that is lost with its host.
+  struct Loss {
+    std::string process;
+    std::string text;  ///< "was on host lab2, which has not been heard of for 3 s"
   };
 
   /// All but `rules` must outlive this object.
@@ -42,10 +50,14 @@ class Launcher {
   void Start();
   /// Reads the messages of the hosts, and sends a sign of life. Call it at least ten times a second. Returns whether
   /// there was a message. Throws std::runtime_error if a host may not be of the run (WhyNotTogether()), cannot do its
-  /// job, or is lost.
+  /// job, or is lost and the run does not go on without it.
   bool Pump();
   /// Processes on other hosts that have ended since the last call.
   std::vector<Exit> Reap();
+  /// A child of this host has ended. Returns whether it was the connection to hosts without which the run goes on.
+  bool OnExit(const Exit& exit);
+  /// The processes that were lost with their hosts since the last call.
+  std::vector<Loss> TakeLosses();
   /// Tells the hosts to kill their processes.
   void Kill();
   /// Tells the hosts to leave when their processes have ended. Returns whether any host has answered.
@@ -62,7 +74,8 @@ class Launcher {
   void TakeWordOf(Remote& remote, const std::string& kind, OutsideFields& fields);
   void Greet(Remote& remote, const HostHello& hello);
   void CheckPids(const Remote& remote) const;
-  void CheckSilence(const Remote& remote) const;
+  void CheckSilence(Remote& remote);
+  void Lose(Remote& remote, const std::string& how);
   void TellAll(const HostWords& words);
 
   const Experiment& experiment_;
@@ -74,6 +87,7 @@ class Launcher {
   std::vector<std::unique_ptr<Connection>> connections_;
   std::vector<std::unique_ptr<Remote>> remotes_;
   std::vector<Exit> exits_;
+  std::vector<Loss> losses_;
   Time next_sign_{};
   bool ending_ = false;
 };
