@@ -55,8 +55,7 @@ void SayFarewellFor(const ProcessKey::GuidPrefix& participant, int domain) {
   };
   const in_addr loopback{htonl(INADDR_LOOPBACK)};
   ::setsockopt(socket.number(), IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback);
-  constexpr std::uint32_t kEverybody = 0xefff0001;  // 239.255.0.1
-  send(kEverybody, FirstPort(domain));
+  send(ntohl(inet_addr(kDiscoveryMulticast)), FirstPort(domain));
   for (int number = 0; number < kParticipantsPerDomain; ++number) send(INADDR_LOOPBACK, DiscoveryPort(domain, number));
 }
 

@@ -152,7 +152,7 @@ void ReceiveDiscoveryInOneThread(dds::DomainParticipantQos& qos, const DomainOpt
   auto& locators = builtin.metatrafficUnicastLocatorList;
   locators.push_back(UdpLocator("127.0.0.1"));
   if (!options.loopback) locators.push_back(UdpLocator(options.address.empty() ? "0.0.0.0" : options.address));
-  Locator_t multicast = UdpLocator("239.255.0.1");  // the specification of RTPS, 9.6.1.4
+  Locator_t multicast = UdpLocator(kDiscoveryMulticast);
   IPLocator::setPhysicalPort(multicast, static_cast<std::uint16_t>(FirstPort(options.domain)));
   builtin.metatrafficMulticastLocatorList.push_back(multicast);  // Fast DDS adds none where others are given
 }
