@@ -196,11 +196,13 @@ void FuzzRowWindow(Events& events) {
         continue;
       }
       const auto index = events.ConsumeIntegralInRange<std::size_t>(0, topics.size() - 1);
-      const std::int64_t sequence = events.ConsumeProbability<double>() < 0.95
-                                        ? ++sequences[index]
-                                        : events.ConsumeIntegralInRange<std::int64_t>(1, INT64_MAX);
-      window.Take(index, std::max<std::int64_t>(SomeTick(events, window.rows()), 0), std::vector<std::uint8_t>(3),
-                  sequence);
+      const bool is_good = events.ConsumeProbability<double>() < 0.98;
+      const std::int64_t tick = is_good ? window.rows() + events.ConsumeIntegralInRange<std::int64_t>(0, 3)
+                                        : std::clamp<std::int64_t>(SomeTick(events, window.rows()), 0, kLastTick);
+      window.CheckSequence(index,
+                           is_good ? ++sequences[index] : events.ConsumeIntegralInRange<std::int64_t>(1, INT64_MAX));
+      window.Take(index, tick, std::vector<std::uint8_t>(3),
+                  event_sequence + events.ConsumeIntegralInRange<std::int64_t>(-1, 1));
       const std::int64_t rows = window.rows();
       if (!window.Next(events.ConsumeBool(), row)) continue;
       Require(row.tick == rows && window.rows() == rows + 1, "a row twice");

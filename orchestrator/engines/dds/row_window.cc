@@ -37,9 +37,10 @@ void RowWindow::Begin(Slot& slot, std::int64_t tick) const {
   slot.samples = 0;
   slot.states = 0;
   slot.events = 0;
+  slot.row.clock.clear();
   slot.row.events.clear();
-  for (auto& command : slot.row.commands) command.clear();
-  for (auto& message : slot.row.messages) message.clear();
+  for (auto* const samples : {&slot.row.states, &slot.row.commands, &slot.row.messages})
+    for (Row::Bytes& sample : *samples) sample.clear();
 }
 
 bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t events) {
@@ -50,7 +51,10 @@ bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::
   Slot& slot = SlotOf(tick);
   if (slot.tick != tick) Begin(slot, tick);
   const Topic& topic = rules_.topics[index];
-  SampleOf(slot.row, topic).assign(bytes.begin(), bytes.end());
+  Row::Bytes& sample = SampleOf(slot.row, topic);
+  if (!sample.empty())
+    throw std::runtime_error(fmt::format("the recording is not complete: {}: tick {} came twice", topic.Name(), tick));
+  sample.assign(bytes.begin(), bytes.end());
   ++slot.samples;
   slot.events = std::max(slot.events, events);
   if (topic.kind == TopicKind::kState || topic.kind == TopicKind::kClock) ++slot.states;

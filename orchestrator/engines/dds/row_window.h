@@ -41,8 +41,8 @@ class RowWindow {
   /// if the sample came twice.
   void CheckSequence(std::size_t index, std::int64_t sequence);
   /// Takes a sample of topic `index` of the rules. Returns whether rows should be taken without delay. Throws
-  /// std::runtime_error if its tick is too far ahead. For a state, `events` is the number of events that have taken
-  /// effect up to its tick; the row of that tick is complete only with these events.
+  /// std::runtime_error if its tick is too far ahead, or came before on this topic. For a state, `events` is the number
+  /// of events that have taken effect up to its tick; the row of that tick is complete only with these events.
   bool Take(std::size_t index, std::int64_t tick, std::span<const std::uint8_t> bytes, std::int64_t events = 0);
   /// Takes event number `sequence`. Returns and throws as Take() does; throws also if it says that an agent has not
   /// answered a tick whose row, with its answer, was taken.

@@ -138,6 +138,17 @@ TEST_F(RowWindowTest, ASampleThatComesTwiceFailsTheRecording) {
                   "the recording is not complete: /agent_2/command: sample 1 came after sample 1"));
 }
 
+TEST_F(RowWindowTest, ATickThatComesTwiceFailsTheRecording) {
+  SendTick(0);
+  ASSERT_TRUE(Next());
+  Send(kCommand2, 1);
+  EXPECT_THAT([&] { Send(kCommand2, 1); },
+              ThrowsMessage<std::runtime_error>("the recording is not complete: /agent_2/command: tick 1 came twice"));
+  Send(kState1, 2);
+  EXPECT_THAT([&] { Send(kState1, 2); },
+              ThrowsMessage<std::runtime_error>("the recording is not complete: /agent_1/state: tick 2 came twice"));
+}
+
 TEST_F(RowWindowTest, TheLastTickOfTheWindowIsTakenAndTheNextOneFails) {
   EXPECT_NO_THROW(Send(kState1, 15));
   EXPECT_THAT([&] { Send(kState1, 16); },
