@@ -225,6 +225,8 @@ TEST_F(ByHand, AnAgentIsThereOnce) {
   EXPECT_EQ(second.err(),
             "error: --id 4: expected no agent, because the run waits for none, got one that is there already\n");
   EXPECT_FALSE(up.IsOver()) << up.err();
+  up.Signal(SIGTERM);
+  EXPECT_EQ(up.Wait(), 128 + SIGTERM) << up.err();
 }
 
 TEST_F(ByHand, WrongCredentialsAreRefusedInWords) {
@@ -272,6 +274,8 @@ TEST_F(ByHand, AStolenCertificateReadsNoMoreThanItsAgentMay) {
   EXPECT_TRUE(Until([&] { return honest.Said("hears /agent_3/state"); })) << honest.err();
   EXPECT_TRUE(honest.Said("refused: Fast DDS refused to make the reader for /agent_1/state")) << honest.err();
   EXPECT_FALSE(up.IsOver()) << "it reads what agent 4 may: " << up.err();
+  up.Signal(SIGTERM);
+  EXPECT_EQ(up.Wait(), 128 + SIGTERM) << up.err();
 }
 
 TEST_F(ByHand, WhoBypassesTheChecksOfTheLibraryGetsNoSampleAndIsNamed) {

@@ -1,18 +1,19 @@
 // thief CREDENTIALS DOMAIN TOPIC...: joins a run as the process whose credentials it has got, and reads topics, until
-// it is killed. It says who has been found, which readers it may not make, and which topics it hears.
-#include <unistd.h>
-
+// it is told to end (SIGTERM). It says who has been found, which readers it may not make, and which topics it hears.
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <vector>
 
 #include "bus/bus.h"
+#include "system/stop_signal.h"
 
 int main(int argc, char** argv) try {
   using namespace mascot;
   if (argc < 4) return 2;
+  StopSignal stop;  // before the threads of DDS: they inherit which signals are blocked
   DomainOptions options;
   options.domain = std::atoi(argv[2]);
   options.name = "thief";
@@ -35,7 +36,7 @@ int main(int argc, char** argv) try {
       std::cerr << std::string("refused: ") + refusal.what() + "\n";
     }
   }
-  for (bool found = false;; usleep(10'000)) {
+  for (bool found = false; stop.Within(std::chrono::milliseconds(10)) == 0;) {
     if (found || domain.discovered() < 2) continue;
     std::cerr << "found\n";
     found = true;

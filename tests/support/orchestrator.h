@@ -34,7 +34,7 @@ inline void SignalTo(pid_t process, int signal) {
   kill(process, signal);
 }
 
-/// Starts a program; the destructor kills it if it still runs.
+/// Starts a program; the destructor ends it (SIGTERM) if it still runs.
 class Running {
  public:
   Running(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& output)
@@ -55,7 +55,7 @@ class Running {
   }
   ~Running() {
     if (pid_ <= 0) return;
-    kill(pid_, SIGKILL);
+    Signal(SIGTERM);  // in order: who is killed leaves its shared memory
     Wait();
   }
   Running(const Running&) = delete;
