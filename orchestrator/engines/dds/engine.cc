@@ -13,7 +13,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <thread>
 #include <utility>
 
@@ -110,6 +109,7 @@ class DdsRun {
   void Spawn();
   void Loop();
   void OnSignal(int signal);
+  bool GoesOnWithoutAgents() const { return experiment_.run.on_agent_loss != OnAgentLoss::kAbort; }
   void Reap();
   bool HearHosts();
   void AwaitChildren();
@@ -143,10 +143,14 @@ class DdsRun {
   RosSource* const ros_;
   const WallClock::time_point launched_ = WallClock::now();
   WallClock::time_point next_reminder_ = launched_ + BetweenReminders();
-  std::vector<std::pair<AgentRange, std::string>> losses_;     // of which no event tells yet: agents, and what happened
-  std::size_t seen_events_ = 0;                                // of those that the recorder has
-  std::set<int> lost_by_file_;                                 // agents that an event of the file has lost
-  std::map<int, std::int64_t> lost_at_;                        // agent -> tick of the newest event that has lost it
+  std::vector<std::pair<AgentRange, std::string>> losses_;  // of which no event tells yet: agents, and what happened
+  std::size_t seen_events_ = 0;                             // of those that the recorder has
+  /// The newest event that has lost an agent.
+  struct LostBy {
+    std::int64_t tick = 0;
+    bool is_of_file = false;
+  };
+  std::map<int, LostBy> lost_by_;                              // agent -> event
   std::vector<std::string> dead_;                              // processes for which to say farewell
   std::map<std::string, std::vector<std::string>> arguments_;  // of the processes of agents on this host
   int next_number_ = kFirstAgents;  // DomainOptions::number of the next process that starts afresh
@@ -222,10 +226,7 @@ RunPhases::Rules DdsRun::Rules() {
           .violation = [this] { return audit_.Violation(); },
           .missing = [this] { return links_->Missing(); },
           .lacking = [this] { return recorder_->Lacking(); },
-          .is_loss =
-              [this](const std::string& process) {
-                return experiment_.run.on_agent_loss != OnAgentLoss::kAbort && AgentsOf(process).has_value();
-              },
+          .is_loss = [this](const std::string& process) { return GoesOnWithoutAgents() && AgentsOf(process); },
           .last_lines = [this](const std::string& process) { return logs_.LastLines(process); }};
 }
 
@@ -493,8 +494,7 @@ void DdsRun::Spawn() {
           .silence_s = std::max(kMinSilence_s, kShareOfTimeout * experiment_.run.agent_timeout_s),
           .goes_on =
               [this] {
-                return experiment_.run.on_agent_loss != OnAgentLoss::kAbort && phases_.signal() == 0 &&
-                       phases_.phase() != RunPhases::Phase::kStarting;
+                return GoesOnWithoutAgents() && phases_.signal() == 0 && phases_.phase() != RunPhases::Phase::kStarting;
               },
           .job = [this](const HostConfig& host, const std::string& our_address) { return JobOf(host, our_address); }},
       children_, logs_, peers_);
@@ -600,12 +600,11 @@ void DdsRun::Reap() {
   std::vector<RunPhases::Exit> exits;
   for (const Exit& exit : children_.Reap())
     if (!launcher_ || !launcher_->OnExit(exit)) exits.push_back({exit.process, exit.code(), exit.Text()});
-  if (launcher_) HearHosts();
-  if (launcher_)
-    for (const Exit& exit : launcher_->Reap())
-      exits.push_back({exit.process, exit.code(), exit.Text() + " on " + HostOf(exit.process)});
-  if (launcher_)
-    for (const Launcher::Loss& loss : launcher_->TakeLosses()) exits.push_back({loss.process, {}, loss.text});
+  if (launcher_) {
+    HearHosts();
+    for (Launcher::Ended& ended : launcher_->TakeEnded())
+      exits.push_back({std::move(ended.process), ended.code, std::move(ended.text)});
+  }
   phases_.OnExits(exits, WallClock::now());
 }
 
@@ -621,9 +620,7 @@ void DdsRun::TellLossBy(const Event& event) {
   const bool is_of_file = std::ranges::any_of(
       experiment_.events, [&](const Event& other) { return other.tick == event.tick && other.Toml() == event.Toml(); });
   const int agent = event.fault->agent;
-  lost_at_[agent] = event.tick;
-  lost_by_file_.erase(agent);
-  if (is_of_file) lost_by_file_.insert(agent);
+  lost_by_[agent] = {event.tick, is_of_file};
   if (event.fault->kind == FaultKind::kHang && !is_of_file)
     console_.Line(fmt::format("lost: agent {} hangs: no command within run.agent_timeout_s = {} s\n{}", agent,
                               ShortestFloat(experiment_.run.agent_timeout_s), WhatFollowsALoss(experiment_)));
@@ -632,7 +629,7 @@ void DdsRun::TellLossBy(const Event& event) {
 /// Whether others have what these agents have sent before they were lost: all have answered the tick of the event.
 bool DdsRun::HaveHeardAllFrom(AgentRange agents) const {
   for (int id = agents.first; id <= agents.last; ++id)
-    if (const auto lost = lost_at_.find(id); lost == lost_at_.end() || confirmed_ <= lost->second) return false;
+    if (const auto event = lost_by_.find(id); event == lost_by_.end() || confirmed_ <= event->second.tick) return false;
   return true;
 }
 
@@ -658,7 +655,7 @@ void DdsRun::TellLosses() {
   }
   std::erase_if(losses_, [this](const auto& loss) {
     if (!recorder_->AreLost(loss.first)) return false;
-    if (!lost_by_file_.contains(loss.first.last))
+    if (const auto event = lost_by_.find(loss.first.last); event == lost_by_.end() || !event->second.is_of_file)
       console_.Line("lost: " + loss.second + "\n" + WhatFollowsALoss(experiment_));
     return true;
   });

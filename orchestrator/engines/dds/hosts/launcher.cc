@@ -157,7 +157,7 @@ void Launcher::Lose(Remote& remote, const std::string& how) {
   for (auto& [process, log] : remote.logs) {
     log = Descriptor();
     if (remote.ended.insert(process).second)
-      losses_.push_back({process, fmt::format("was on host {}, {}", remote.config.name, how)});
+      ended_.push_back({process, {}, fmt::format("was on host {}, {}", remote.config.name, how)});
   }
 }
 
@@ -171,7 +171,7 @@ bool Launcher::OnExit(const Exit& exit) {
   return true;
 }
 
-std::vector<Launcher::Loss> Launcher::TakeLosses() { return std::exchange(losses_, {}); }
+std::vector<Launcher::Ended> Launcher::TakeEnded() { return std::exchange(ended_, {}); }
 
 /// Throws std::runtime_error for what is no word of a host of this run.
 void Launcher::Hear(const Connection& connection, const std::string& line) {
@@ -248,7 +248,8 @@ void Launcher::TakeWordOf(Remote& remote, const std::string& kind, OutsideFields
       throw JsonError(fmt::format("expected how {} has ended as \"status\", got {}", process, status));
     refuse_repetition(!remote.ended.insert(process).second);
     log = Descriptor();
-    exits_.push_back({process, status});
+    const Exit exit{process, status};
+    ended_.push_back({process, exit.code(), exit.Text() + " on " + remote.config.name});
   }
 }
 
@@ -284,8 +285,6 @@ void Launcher::CheckPids(const Remote& remote) const {
           fmt::format("{} is not the process that host {} has started", process, remote.config.name));
   }
 }
-
-std::vector<Exit> Launcher::Reap() { return std::exchange(exits_, {}); }
 
 void Launcher::TellAll(const HostWords& words) {
   for (const auto& connection : connections_) connection->output.Write(CompactJson(words));

@@ -27,16 +27,17 @@ class Launcher {
   struct Rules {
     double start_timeout_s = 0;
     double silence_s = 0;  ///< a host from which nothing is heard for this time is lost
-    /// Whether the run goes on without a host that is lost: its processes are lost then (TakeLosses()).
+    /// Whether the run goes on without a host that is lost: its processes have ended then (TakeEnded()).
     std::function<bool()> goes_on = [] { return false; };
     /// What a host shall do. `our_address` is the address at which it reaches this machine.
     std::function<HostJob(const HostConfig& host, const std::string& our_address)> job;
   };
 
-  /// A process that is lost with its host.
-  struct Loss {
+  /// A process on another host has ended, or is lost with its host.
+  struct Ended {
     std::string process;
-    std::string text;  ///< "was on host lab2, which has not been heard of for 3 s"
+    std::optional<int> code;  ///< nothing: a signal killed it, or nobody knows
+    std::string text;         ///< "exited with code 3 on lab1", "was on host lab2, which has not been heard of for 3 s"
   };
 
   /// All but `rules` must outlive this object.
@@ -52,12 +53,10 @@ class Launcher {
   /// there was a message. Throws std::runtime_error if a host may not be of the run (WhyNotTogether()), cannot do its
   /// job, or is lost and the run does not go on without it.
   bool Pump();
-  /// Processes on other hosts that have ended since the last call.
-  std::vector<Exit> Reap();
   /// A child of this host has ended. Returns whether it was the connection to hosts without which the run goes on.
   bool OnExit(const Exit& exit);
-  /// The processes that were lost with their hosts since the last call.
-  std::vector<Loss> TakeLosses();
+  /// The processes on other hosts that have ended, or were lost, since the last call.
+  std::vector<Ended> TakeEnded();
   /// Tells the hosts to kill their processes.
   void Kill();
   /// Tells the hosts to leave when their processes have ended. Returns whether any host has answered.
@@ -86,8 +85,7 @@ class Launcher {
   Peers& peers_;
   std::vector<std::unique_ptr<Connection>> connections_;
   std::vector<std::unique_ptr<Remote>> remotes_;
-  std::vector<Exit> exits_;
-  std::vector<Loss> losses_;
+  std::vector<Ended> ended_;
   Time next_sign_{};
   bool ending_ = false;
 };
