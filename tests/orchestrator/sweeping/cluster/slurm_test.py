@@ -49,6 +49,38 @@ def last_x(run):
     return run["position"][-1, 0, 0]
 """
 
+# Flies a run on the nodes of its job, kills what the orchestrator has started on node2, and ends the run when the
+# agents there are lost. The arguments are those of `orchestrator up`.
+WITHOUT_NODE2 = """\
+import pathlib, signal, subprocess, sys, time
+
+def until(is_so):
+    deadline = time.monotonic() + 100
+    while not is_so():
+        if up.poll() is not None or time.monotonic() > deadline:
+            sys.exit("the run has ended, or did not do what was expected")
+        time.sleep(0.01)
+
+def said():
+    return pathlib.Path("up.err").read_text()
+
+def is_host_of_node2(process):
+    try:
+        return (b"\\0host\\0" in (process / "cmdline").read_bytes()
+                and b"SLURMD_NODENAME=node2\\0" in (process / "environ").read_bytes())
+    except OSError:
+        return False
+
+up = subprocess.Popen(sys.argv[1:], stderr=open("up.err", "w"))
+until(lambda: "x real time" in said())
+hosts = [int(process.name) for process in pathlib.Path("/proc").glob("[0-9]*") if is_host_of_node2(process)]
+for host in hosts:
+    subprocess.run(["kill", "-KILL", str(host)], check=True, timeout=10)
+until(lambda: "lost: " in said())
+up.send_signal(signal.SIGINT)
+sys.exit(up.wait(timeout=100))
+"""
+
 
 def ran(*words, code=0, **options):
     """What a command has printed."""
@@ -262,6 +294,26 @@ class Run(unittest.TestCase):
             self.assertEqual(hosts, ["node1", "node2", "node3"])
             said = (spread / "logs/agent_1.log").read_text()
             self.assertTrue(said.startswith("hears "), said)
+
+    def test_goes_on_without_a_node_of_its_job(self):
+        orchestrator = f'{os.environ["MASCOT_BINARY_DIR"]}/orchestrator'
+        sets = ["run.duration_s=600", "run.pace=1", "run.agent_timeout_s=5", "run.on_agent_loss=hold",
+                "output.save_plot=false"]
+        with tempfile.TemporaryDirectory(prefix="mascot-slurm-") as folder:
+            script = pathlib.Path(folder, "without_node2.py")
+            script.write_text(WITHOUT_NODE2)
+            up = [orchestrator, "up", ROOT / "configs/formation.toml", "--slurm", "--out", "spread"]
+            up += [word for key in sets for word in ("--set", key)]
+            job = shlex.join(str(word) for word in [sys.executable, script, *up])
+            ran(CLUSTER, "--nodes", "3", "sbatch", "--wait", "--nodes=3", "--output=log", "--wrap", job, cwd=folder,
+                code=130)
+            said = pathlib.Path(folder, "up.err").read_text()
+            lost = re.findall("^lost: agent_([0-9]+) was on host node2, which has not been heard of for 3 s$", said,
+                              re.MULTILINE)
+            config = pathlib.Path(folder, "spread/config.toml").read_text()
+            node2 = re.search('^name = "node2"\nagents = "([0-9-]+)"$', config, re.MULTILINE)
+            self.assertEqual(f"{lost[0]}-{lost[-1]}", node2[1], said)
+            self.assertIn("the same, bit for bit", ran(orchestrator, "verify", "spread", cwd=folder))
 
 
 class Page(unittest.TestCase):
