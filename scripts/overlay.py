@@ -7,7 +7,7 @@ from pictures import (
     AXIS_NAMES, LEAST_RANGE, PICTURES, above, curve_floor, curve_label, draw_obstacles, drawn, floor_of, in_a_word,
     map_axis, name_floor, panel_grid, seen_from, square_figure, time_axis, widen,
 )
-from run_folder import RunError, curve_of_last_law, disagreement
+from run_folder import RunError, curve_of_last_law, disagreement, largest
 
 
 def names_of(folders, runs):
@@ -79,7 +79,7 @@ def disagreements(names, runs):
     figure, axis = plt.subplots(figsize=(style.size().width, style.size().single))
     floor, curves = max(map(floor_of, runs)), []
     for run, look, name in each(names, runs):
-        curves.append(disagreement(run)[run.rows][:, run.honest].max(axis=1))
+        curves.append(largest(run, disagreement(run))[run.rows])
         plot_lines(axis, run.t[run.rows], above(floor, curves[-1])[:, None], name, look)
     style.log_axis(axis)
     name_floor(axis, floor, *curves)

@@ -15,8 +15,8 @@ from figure_style import DASHED, MANY, OKABE_ITO, grey, small
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Circle, Polygon, Rectangle
 from run_folder import (
-    FILTERED, INFEASIBLE, cells, curve_of_last_law, disagreement, hull, is_on_a_line, predicted_of_curve, separation,
-    spanning_tree, waypoint_targets,
+    FILTERED, INFEASIBLE, cells, curve_of_last_law, disagreement, hull, is_on_a_line, largest, predicted_of_curve,
+    separation, spanning_tree, waypoint_targets,
 )
 
 CROWD = 10  # more agents than this have smaller marks and thinner lines
@@ -456,7 +456,7 @@ def disagreement_figure(run):
     figure, axis = log_panel(run, shown_m, f"disagreement ({what})", f"{what} (m)")
     mark_changes([axis], run, [f"{change}, to {name}" for change, name in zip(run.names_of_spans, names)]
                  if len(set(names)) > 1 else None)
-    largest_m = distance_m[:, run.honest].max(axis=1)
+    largest_m = largest(run, distance_m)
     axis.plot(run.t[run.rows], above(floor_of(run), largest_m)[run.rows], color=grey(0.1), linewidth=3, alpha=0.25, zorder=1,
               label="largest")
     label = "2 % of the start"

@@ -16,6 +16,7 @@ DRAWING = {"leader": "leader", "switches": False, "pictures": [], "telling": "pa
 ARRAYS = {"position": 3, "velocity": 3, "acceleration_command": 3}  # name -> numbers per agent and row
 UNPACKED_FREE, UNPACKED_TIMES = 256 << 20, 300  # bytes that a file may unpack to, and then so many times its own
 NUMBERS_AT_ONCE = 1 << 14  # in one array of a computation over rows, so that it stays in the cache
+LOSSES = ("kill", "hang")  # faults
 WORDS_MAX = 2  # changes that the name of a phase says
 FILTERED, INFEASIBLE = 16, 32  # bits of flags: law.safety changed the command; it found no safe one
 
@@ -152,10 +153,39 @@ class Run:
         overrides = self.config.get("agents", {}).get("override", [])
         return [agent["id"] - 1 for agent in overrides if "lie" in agent]
 
-    @property
-    def honest(self):
-        """Indices of all other agents, or of all if all lie."""
-        return [k for k in range(self.size) if k not in self.liars] or list(range(self.size))
+    @cached_property
+    def counts(self):
+        """(T, N): whether an agent counts in a row, because it neither lies nor is lost; all do where none is left."""
+        lies, is_lost = (np.zeros((self.t.size, self.size), dtype=bool) for _ in range(2))
+        lies[:, self.liars] = True
+        for at_s, k, kind in self.faults_of_agents():
+            rows = self.t >= at_s - 1e-9
+            if kind in LOSSES:
+                is_lost[rows, k] = True
+            else:
+                lies[rows, k] = kind == "lie"
+                is_lost[rows, k] &= kind != "restart"
+        counts = ~(lies | is_lost)
+        return counts | ~counts.any(axis=1, keepdims=True)
+
+    def faults_of_agents(self):
+        """(time, index, kind) in order, of the faults that say whether an agent counts: kill, hang, lie, ok, restart."""
+        run, found, due = self.config.get("run", {}), [], {}  # due: time of the fresh start of an agent that is lost
+        after_s = run.get("restart_after_s", 0) if run.get("on_agent_loss") == "restart" else np.inf
+        events = [event for event in self.config.get("events", []) if {"fault", "restart"} & event.keys()]
+        for event in sorted(events, key=lambda event: event["at_s"]):
+            fault, at_s = event.get("fault", {}), event["at_s"]
+            k = event.get("restart", fault.get("agent")) - 1
+            if due.get(k, np.inf) <= at_s:
+                found.append((due.pop(k), k, "restart"))
+            if "restart" in event:
+                due.pop(k, None)
+                found.append((at_s, k, "restart"))
+            elif fault.get("of", "agent") == "agent" and fault["kind"] in (*LOSSES, "lie", "ok"):
+                found.append((at_s, k, fault["kind"]))
+                if fault["kind"] in LOSSES:
+                    due.setdefault(k, at_s + after_s)
+        return sorted(found + [(at_s, k, "restart") for k, at_s in due.items()], key=lambda fault: fault[0])
 
     @property
     def axes(self):
@@ -199,6 +229,7 @@ class Run:
     def events(self):
         """(time, words) of what changed the run, in order, without the phases of the law."""
         told = [(event["at_s"], words_of(event)) for event in self.config.get("events", [])]
+        told += [(at_s, f"restart {k + 1}") for at_s, k, kind in self.faults_of_agents() if kind == "restart"]
         return sorted(((at_s, words) for at_s, words in told if words and at_s <= self.t[-1]), key=lambda of: of[0])
 
     @property
@@ -268,6 +299,9 @@ def words_of(event):
             words.append(f"{key} {edges[0][0]},{edges[0][1]}" + (f" and {len(edges) - 1} more" if edges[1:] else ""))
     if "graph" in event:
         words.append("another graph")
+    if fault := event.get("fault"):
+        of = "" if fault.get("of", "agent") == "agent" else f"{fault['of']} "
+        words.append(f"{of}{fault['kind']} {fault['agent']}")
     return ", ".join(words)
 
 
@@ -428,17 +462,23 @@ def read_run(folder):
 
 
 def disagreement(run):
-    """(T, N): distance of every agent to the leader, or else to the mean of those who do not lie, along the axes of the
-    law (m); the leader is that of the phase. In a formation, the places are subtracted from the positions first. NaN in
+    """(T, N): distance of every agent to the leader, or else to the mean of those who count, along the axes of the law
+    (m); the leader is that of the phase. In a formation, the places are subtracted from the positions first. NaN in
     phases whose law does not make agents agree."""
     p = (run.position - run.places)[:, :, run.axes]
     distance = np.full(p.shape[:2], np.nan)
     for span in run.spans:
         if "disagreement" in span.drawing["pictures"]:
             of, leader = p[span.rows], run.leader_of(span.law)
-            reference = of[:, run.honest].mean(axis=1, keepdims=True) if leader is None else of[:, [leader]]
+            counts = run.counts[span.rows][:, :, None]
+            reference = of.mean(axis=1, keepdims=True, where=counts) if leader is None else of[:, [leader]]
             distance[span.rows] = np.linalg.norm(of - reference, axis=2)
     return distance
+
+
+def largest(run, distance):
+    """(T): the largest distance of those who count."""
+    return np.where(run.counts, distance, -np.inf).max(axis=1)
 
 
 def curve_of_last_law(run):

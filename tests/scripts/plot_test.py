@@ -396,6 +396,42 @@ class WhatIsInThem(PlotTest):
         p = states["position"][0, [0, 2], :2]
         self.assertAlmostEqual(self.lines(axis)["largest"].get_ydata()[0], np.linalg.norm(p[0] - p[1]) / 2)
 
+    FAULTS = CONSENSUS + ('[[events]]\nat_s = 1.0\nfault = { agent = 2, kind = "kill" }\n'
+                          '[[events]]\nat_s = 2.0\nrestart = 2\n'
+                          '[[events]]\nat_s = 3.0\nfault = { agent = 3, of = "agent", kind = "lie", offset_m = [1, 0, 0] }\n'
+                          '[[events]]\nat_s = 3.5\nfault = { agent = 1, of = "motor", kind = "off", motor = 2 }\n'
+                          '[[events]]\nat_s = 4.0\nfault = { agent = 3, kind = "ok" }\n')
+
+    def counting(self, config):
+        """Who counts at each half second, by number."""
+        self.write(config)
+        run = run_folder.read_run(self.folder)
+        return {float(t_s): [int(k) + 1 for k in np.flatnonzero(of)] for t_s, of in zip(run.t, run.counts) if t_s % 0.5 == 0}
+
+    def test_who_is_lost_or_lies_at_a_time_does_not_count(self):
+        all_of_them = [1, 2, 3]
+        self.assertEqual(self.counting(self.FAULTS), {
+            0.0: all_of_them, 0.5: all_of_them, 1.0: [1, 3], 1.5: [1, 3], 2.0: all_of_them, 2.5: all_of_them,
+            3.0: [1, 2], 3.5: [1, 2], 4.0: all_of_them, 4.5: all_of_them, 5.0: all_of_them})
+        kill, hang = ('[[events]]\nat_s = {}\nfault = { agent = 2, kind = "' + kind + '" }\n' for kind in ("kill", "hang"))
+        restarts = CONSENSUS.replace("[run]\n", '[run]\non_agent_loss = "restart"\nrestart_after_s = 1.5\n')
+        twice = self.counting(restarts + kill.replace("{}", "1.0") + hang.replace("{}", "3.0"))
+        self.assertEqual([t_s for t_s, who in twice.items() if who != all_of_them], [1.0, 1.5, 2.0, 3.0, 3.5, 4.0])
+        by_event = self.counting(restarts + kill.replace("{}", "1.0") + "[[events]]\nat_s = 2.0\nrestart = 2\n"
+                                 + hang.replace("{}", "2.5"))
+        self.assertEqual([t_s for t_s, who in by_event.items() if who != all_of_them], [1.0, 1.5, 2.5, 3.0, 3.5])
+        nobody = "".join(f'[[events]]\nat_s = 1.0\nfault = {{ agent = {k}, kind = "kill" }}\n' for k in all_of_them)
+        self.assertEqual(set(map(tuple, self.counting(CONSENSUS + nobody).values())), {(1, 2, 3)})
+
+    def test_the_disagreement_is_of_those_who_count(self):
+        states = arrays()
+        states["position"][:, 2] = [100, 0, 1]
+        axis = self.figure("disagreement", config=self.FAULTS, states=states).axes[0]
+        p, largest = states["position"][:, :2, :2], self.lines(axis)["largest"].get_ydata()
+        self.assertAlmostEqual(largest[35], np.linalg.norm(p[35, 0] - p[35, 1]) / 2)
+        self.assertGreater(largest[25], 50)
+        self.assertGreater(largest[45], 50)
+
     def test_the_hull_of_listed_leaders_is_drawn_at_the_end(self):
         config = '[law]\nname = "chase"\nguides = [1, 2, 3, 5]\n'
         states = arrays(agents=5)
@@ -618,6 +654,15 @@ class Changes(PlotTest):
                 "another graph"])
             for axis in axes:
                 self.assertEqual(self.vertical(axis), [1, 2, 3, 3.5, 4, 4.5])
+
+    def test_faults_and_fresh_starts_are_marked_and_named(self):
+        config = CONSENSUS.replace("[run]\n", '[run]\non_agent_loss = "restart"\nrestart_after_s = 0.5\n') + (
+            '[[events]]\nat_s = 1.0\nfault = { agent = 2, of = "agent", kind = "kill" }\n'
+            '[[events]]\nat_s = 2.0\nrestart = 3\n'
+            '[[events]]\nat_s = 3.0\nfault = { agent = 1, of = "motor", kind = "off", motor = 2 }\n')
+        axis = self.figure("velocity", config=config).axes[0]
+        self.assertEqual(self.marks(axis), ["kill 2", "restart 2", "restart 3", "motor off 1"])
+        self.assertEqual(self.vertical(axis), [1, 1.5, 2, 3])
 
     def test_phases_are_called_by_what_changed(self):
         first = {"name": "chase", "at_s": 0, "beta": 1.0, "gains": [1], "leader": 0, "axes": "xy"}
