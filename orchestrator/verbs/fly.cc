@@ -46,9 +46,9 @@ Crew EngineArgs::MakeCrew(const Experiment& experiment, int others) const {
               threads ? Crew::Size::kExactly : Crew::Size::kAtMost);
 }
 
-Flight::Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
-               const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop,
-               Crew& crew, RosSource* ros)
+EngineRun::EngineRun(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
+                     const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop,
+                     Crew& crew, RosSource* ros)
     : experiment_(experiment), sinks_(sinks), requests_(requests), console_(console), stop_(stop), crew_(crew) {
   if (engine == kOverDds)
     dds_.emplace(experiment, folder, sinks, requests, console, stop, ros);
@@ -56,12 +56,12 @@ Flight::Flight(const std::string& engine, const Experiment& experiment, const Ru
     janitor_.emplace();
 }
 
-void Flight::LeaveIfKilled(const std::string& path, const std::string& text) {
+void EngineRun::LeaveIfKilled(const std::string& path, const std::string& text) {
   if (dds_) dds_->LeaveIfKilled(path, text);
   if (janitor_) janitor_->LeaveWords(path, text);
 }
 
-EngineResult Flight::Fly() {
+EngineResult EngineRun::Fly() {
   if (dds_) return dds_->Fly();
   const Interruptions interruptions(stop_, console_, [](int code) {
     const char* const reason = "a second signal has ended the process at once";
@@ -74,12 +74,12 @@ EngineResult Flight::Fly() {
   return result;
 }
 
-void Flight::End() {
+void EngineRun::End() {
   if (janitor_) janitor_->Dismiss();  // the orchestrator kills what laws have started at its own end
   if (dds_) hangs_ = !dds_->End();
 }
 
-void Flight::LeaveIfItHangs(int code) const {
+void EngineRun::LeaveIfItHangs(int code) const {
   if (hangs_) LeaveNow({.code = code, .process = "orchestrator"});  // its threads use what would be destroyed
 }
 

@@ -43,14 +43,14 @@ struct EngineArgs {
 };
 
 /// One experiment on one engine.
-class Flight {
+class EngineRun {
  public:
   /// Every sink gets every row, in tick order. `requests`: what people ask of the run, also one of the sinks; null:
   /// they cannot ask anything. `crew`: computes a run in this process. `ros`, if given, is published for RViz2. All
   /// arguments must outlive this object.
-  Flight(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
-         const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop, Crew& crew,
-         RosSource* ros = nullptr);
+  EngineRun(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
+            const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop, Crew& crew,
+            RosSource* ros = nullptr);
 
   /// Sets the contents that the file `path` gets if this process is killed during a run over DDS, or during one with
   /// laws of users in this process. Call it before Fly().

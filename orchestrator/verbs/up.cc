@@ -204,8 +204,8 @@ int Up(UpArgs& args) {
   }
   const RunSocket socket(experiment, std::filesystem::absolute(folder.path()).string(), args.engine.name, viewers.url(),
                          requests);
-  Flight flight(args.engine.name, experiment, folder, sinks, &requests, console, stop, crew,
-                ros_view ? &*ros_view : nullptr);
+  EngineRun flight(args.engine.name, experiment, folder, sinks, &requests, console, stop, crew,
+                   ros_view ? &*ros_view : nullptr);
   flight.LeaveIfKilled(summary_file,
                        SummaryIfKilled(experiment, args.engine.name, std::nullopt,
                                        "the orchestrator was killed (SIGKILL: by somebody, or for want of memory), or "

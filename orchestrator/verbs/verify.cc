@@ -146,7 +146,7 @@ int Verify(const VerifyArgs& args) {
   if (comparison.edges() != nullptr) sinks.push_back(&edges.emplace(experiment, *comparison.edges()));
   sinks.push_back(&comparison);
   Crew crew = args.engine.MakeCrew(experiment, /*others=*/0);
-  Flight flight(args.engine.name, experiment, folder, sinks, nullptr, console, stop, crew);
+  EngineRun flight(args.engine.name, experiment, folder, sinks, nullptr, console, stop, crew);
   const EngineResult result = flight.Fly();
   if (result.failure.empty() && result.signal == 0) comparison.Finish();
   const int code = Report(subject, comparison, result);

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/agent_range.h"
+#include "base/crew.h"
+#include "experiment/experiment.h"
+#include "experiment/live_experiment.h"
+#include "orchestrator/team/row.h"
+#include "orchestrator/team/team.h"
+#include "physics_server/world.h"
+
+namespace mascot {
+
+/// A run in this process that somebody steps, tick by tick, without DDS: the same World and Agent classes as in the
+/// processes of the other engine, and the events of the file. The buffers are reused, so that ticks do not allocate.
+///
+/// An agent whose law fails is lost, with all agents of its process (AgentProcesses()), as over DDS, where the process
+/// ends: run.on_agent_loss says what follows.
+class Flight {
+ public:
+  using Tell = std::function<void(const std::string& words)>;
+
+  /// The experiment and `crew`, in whose threads the run computes, must outlive this object. `tell` gets words for the
+  /// user about agents that are lost.
+  explicit Flight(
+      const Experiment& experiment, Crew& crew = Crew::Alone(), Tell tell = [](const std::string&) {});
+
+  /// The states of the current tick, and the commands and messages that answer them. Valid until the next call. Throws
+  /// std::runtime_error if the run does not go on: a law fails, or an event loses an agent, and run.on_agent_loss is
+  /// "abort".
+  const DecodedRow& Exchange();
+  /// Moves the bodies from the current tick to the next one, by the commands of the last Exchange().
+  void Step() { world_.Step(actuation_); }
+  /// The current tick; 0 at first.
+  std::int64_t tick() const { return world_.tick(); }
+
+  /// An event by hand, which takes effect at the next Exchange().
+  void Take(Event event);
+  /// The pace that an event of the newest tick has set; nullopt: none has.
+  std::optional<double> new_pace() const { return new_pace_; }
+  Contacts contacts() const { return world_.contacts(); }
+
+ private:
+  LiveExperiment& Live();
+  std::span<const int> SilentAt(std::int64_t tick);
+  void LoseThoseThatFailed(std::int64_t tick);
+  void Lose(int id, std::int64_t tick);
+  void TakeEvents(std::int64_t tick);
+  void TakeEvent(const Event& event);
+
+  const Experiment& experiment_;
+  const Tell tell_;
+  const std::vector<AgentRange> processes_;
+  const bool may_lose_;  // the run goes on without agents that are lost
+  World world_;
+  Team team_;
+  std::vector<Team::Failure> failures_;  // at the newest tick
+  std::vector<Command> kept_;            // the commands before it, if may_lose_
+  std::optional<LiveExperiment> live_;   // absent before the first event
+  std::size_t next_event_ = 0;           // in experiment_.events
+  std::vector<Event> by_hand_;
+  std::optional<double> new_pace_;
+  std::vector<int> silent_;
+  std::vector<Actuation> actuation_;
+  DecodedRow row_;
+};
+
+}  // namespace mascot
