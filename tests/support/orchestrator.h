@@ -56,6 +56,7 @@ class Running {
   ~Running() {
     if (pid_ <= 0) return;
     Signal(SIGTERM);  // in order: who is killed leaves its shared memory
+    Signal(SIGCONT);  // a test may have stopped it
     Wait();
   }
   Running(const Running&) = delete;

@@ -116,5 +116,16 @@ TEST(Waits, HaveADeadlineInAllTests) {
   EXPECT_GT(files, 100);
 }
 
+TEST(Running, EndsAProgramThatTheTestHasStopped) {
+  const ScratchFolder folder;
+  pid_t pid = 0;
+  {
+    const Running program("sleep", {"1000"}, folder.File("sleep"));
+    pid = program.pid();
+    program.Signal(SIGSTOP);
+  }
+  EXPECT_NE(kill(pid, 0), 0);
+}
+
 }  // namespace
 }  // namespace mascot::test
