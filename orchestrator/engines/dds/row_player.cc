@@ -103,15 +103,23 @@ bool RowPlayer::LetListenersCatchUp() {
 
 void RowPlayer::PlaySamples() {
   McapReader reader(options_.file);
-  const auto begin = Clock::now();
+  auto begin = Clock::now();
   std::uint64_t end_ns = 0;
   for (const auto& [id, channel] : contents_.channels) end_ns = std::max(end_ns, channel.last_time);
   std::map<std::uint16_t, int> unconfirmed;  // by channel, an upper limit
   std::uint64_t time_ns = 0;
+  // We know of readers that may not know of our writers yet: another vendor's learns of them a second later, and misses
+  // what they have sent by then. Those that are reliable confirm the first samples once they do.
+  bool is_heard = false;
   while (const McapContents::Message* sample = reader.Next()) {
     const auto writer = writers_.find(sample->channel);
     if (writer == writers_.end()) continue;
     if (sample->log_time != time_ns) {
+      if (!std::exchange(is_heard, true)) {
+        const auto since = Clock::now();
+        if (!LetListenersCatchUp()) return;
+        begin += Clock::now() - since;
+      }
       time_ns = sample->log_time;
       const double time_s = static_cast<double>(time_ns) * 1e-9;
       if (options_.speed > 0 && !WaitUntil(begin + std::chrono::duration_cast<Clock::duration>(
