@@ -49,10 +49,10 @@ def last_x(run):
     return run["position"][-1, 0, 0]
 """
 
-# Flies a run on the nodes of its job, kills what the orchestrator has started on node2, and ends the run when the
+# Flies a run on the nodes of its job, kills what the orchestrator has started on node2, and ends the run when the four
 # agents there are lost. The arguments are those of `orchestrator up`.
 WITHOUT_NODE2 = """\
-import pathlib, signal, subprocess, sys, time
+import os, pathlib, signal, subprocess, sys, time
 
 def until(is_so):
     deadline = time.monotonic() + 100
@@ -73,10 +73,9 @@ def is_host_of_node2(process):
 
 up = subprocess.Popen(sys.argv[1:], stderr=open("up.err", "w"))
 until(lambda: "x real time" in said())
-hosts = [int(process.name) for process in pathlib.Path("/proc").glob("[0-9]*") if is_host_of_node2(process)]
-for host in hosts:
-    subprocess.run(["kill", "-KILL", str(host)], check=True, timeout=10)
-until(lambda: "lost: " in said())
+for process in filter(is_host_of_node2, pathlib.Path("/proc").glob("[0-9]*")):
+    os.kill(int(process.name), signal.SIGKILL)
+until(lambda: said().count("lost: agent_") == 4)
 up.send_signal(signal.SIGINT)
 sys.exit(up.wait(timeout=100))
 """
