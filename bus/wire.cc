@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/fnv.h"
 #include "idl/schemas.h"
 
 namespace mascot {
@@ -57,10 +58,7 @@ void DeserializeAs(std::span<const std::uint8_t> bytes, typename PubSub::type& s
 }  // namespace
 
 std::uint64_t DigestOf(const mascot_msgs::msg::Experiment& experiment) {
-  std::uint64_t digest = 14695981039346656037ULL;
-  for (const char character : experiment.toml())
-    digest = (digest ^ static_cast<unsigned char>(character)) * 1099511628211ULL;
-  return std::max<std::uint64_t>(digest, 1);
+  return std::max<std::uint64_t>(Fnv1a(experiment.toml()), 1);
 }
 
 std::string WireTypeName(TopicKind kind) {
