@@ -1,0 +1,75 @@
+#include "agent/laws/parts/observation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "base/fnv.h"
+
+namespace mascot {
+namespace {
+
+double* Put(const Eigen::Vector3d& vector, double* to) {
+  for (Eigen::Index k = 0; k < 3; ++k) *to++ = vector[k];
+  return to;
+}
+
+}  // namespace
+
+std::string ObservationLayout::Text() const {
+  return fmt::format("mascot observation 1: own p 3, v 3, attitude 4; {} x (p 3, v 3, weight, heard, age, message {})",
+                     places, message);
+}
+
+std::string ObservationLayout::Hash() const { return fmt::format("{:016x}", Fnv1a(Text())); }
+
+std::vector<std::string> ObservationLayout::Names() const {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& what, std::string_view axes) {
+    for (const char axis : axes) names.push_back(fmt::format("{}.{}", what, axis));
+  };
+  add("p", "xyz");
+  add("v", "xyz");
+  add("attitude", "xyzw");
+  for (std::size_t k = 0; k < places; ++k) {
+    const std::string name = fmt::format("neighbour[{}]", k);
+    add(name + ".p", "xyz");
+    add(name + ".v", "xyz");
+    for (const char* const what : {"weight", "heard", "age"}) names.push_back(name + "." + what);
+    for (std::size_t n = 0; n < message; ++n) names.push_back(fmt::format("{}.message[{}]", name, n));
+  }
+  return names;
+}
+
+ObservationLayout LayoutOf(const Experiment& experiment, std::size_t message) {
+  std::size_t places = 0;
+  for (int id = 1; id <= experiment.size(); ++id) places = std::max(places, experiment.graph.HeardBy(id).size());
+  return {places, message};
+}
+
+Observer::Observer(const Experiment& experiment, int id, const ObservationLayout& layout)
+    : layout_(layout), row_(layout.size()) {
+  for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) ids_.push_back(neighbour.id);
+}
+
+std::span<const double> Observer::Observe(const Motion& self, std::span<const Heard> heard) {
+  std::ranges::fill(row_, 0.0);
+  double* own = Put(self.v_WB, Put(self.p_WB, row_.data()));
+  const double sign = self.q_WB.w() < 0 ? -1 : 1;  // q and -q are the same attitude
+  for (const double part : {self.q_WB.x(), self.q_WB.y(), self.q_WB.z(), self.q_WB.w()}) *own++ = sign * part;
+  auto next = heard.begin();
+  for (std::size_t k = 0; k < ids_.size() && next != heard.end(); ++k) {
+    if (next->id != ids_[k]) continue;
+    double* place = own + k * (ObservationLayout::kOfNeighbour + layout_.message);
+    place = Put(next->motion.v_WB - self.v_WB, Put(next->motion.p_WB - self.p_WB, place));
+    *place++ = next->weight;
+    *place++ = 1;
+    *place++ = next->age_s;
+    std::ranges::copy(next->message.first(std::min(next->message.size(), layout_.message)), place);
+    ++next;
+  }
+  return row_;
+}
+
+}  // namespace mascot
