@@ -362,7 +362,7 @@ class Package(unittest.TestCase):
         tree = lambda start, pattern: [path.relative_to(ROOT / start).as_posix() for path in (ROOT / start).rglob(pattern)]
         for expected in [
                 there("usr/bin", ["orchestrator", "agent", "physics_server"]),
-                there("usr/share/mascot/configs", tree("configs", "*.toml")),
+                there("usr/share/mascot/configs", [*tree("configs", "*.toml"), *tree("configs", "*.onnx")]),
                 there("usr/share/mascot/page", tree("orchestrator/live/page", "*.*")),
                 there("usr/share/mascot_msgs", ["package.xml", "CMakeLists.txt", *tree("idl/mascot_msgs", "*.msg")]),
                 there("usr/share/man/man1", (path.name for path in (BUILD / "man").glob("*"))),

@@ -14,7 +14,7 @@ using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     RendezvousLaw, EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw,
     CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, CoverageLaw,
-    AffineFormationLaw, ResilientLaw, FlockingLaw, AvoidanceLaw, CustomLaw, PluginLaw;
+    AffineFormationLaw, ResilientLaw, FlockingLaw, AvoidanceLaw, PolicyLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
@@ -22,7 +22,8 @@ std::span<const LawEntry> Laws() {
       FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(), ContainmentLaw(),
       AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(),
       BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   CoverageLaw(),       AffineFormationLaw(),
-      ResilientLaw(),        FlockingLaw(),       AvoidanceLaw(),        CustomLaw(),         PluginLaw(),
+      ResilientLaw(),        FlockingLaw(),       AvoidanceLaw(),        PolicyLaw(),         CustomLaw(),
+      PluginLaw(),
   };
   return kLaws;
 }
@@ -105,6 +106,19 @@ std::vector<std::string> UnreadParams(const Experiment& experiment) {
       if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(std::move(warning));
   }
   return warnings;
+}
+
+std::vector<Perceived> PerceivedIn(const Experiment& experiment) {
+  std::vector<Perceived> all;
+  for (const AgentConfig& agent : experiment.agents) {
+    const LawEntry& law = EntryOf(agent.law);
+    if (law.observation == nullptr) continue;
+    const ObservationLayout& layout = law.observation(agent.law);
+    auto found = std::ranges::find(all, layout, &Perceived::layout);
+    if (found == all.end()) found = all.insert(all.end(), {layout, {}});
+    found->ids.push_back(agent.id);
+  }
+  return all;
 }
 
 bool EverLeavesOut(const Experiment& experiment) {

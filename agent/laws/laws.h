@@ -13,6 +13,7 @@
 
 #include "agent/laws/law.h"
 #include "agent/laws/law_figures.h"
+#include "agent/laws/parts/observation.h"
 #include "experiment/read_experiment.h"
 
 namespace mascot {
@@ -117,6 +118,8 @@ struct LawEntry {
   /// F: so many of those that an agent hears may lie, because the law leaves out as many of the farthest on either
   /// side. Null: it believes all that it hears.
   std::size_t (*liars_left_out)(const LawConfig& law) = nullptr;
+  /// What the law's agents perceive as a row of numbers, which a file of the law was made for. Null: no such row.
+  const ObservationLayout& (*observation)(const LawConfig& law) = nullptr;
   /// Null: the law is not linear.
   LinearForm (*linear)(const LawConfig& law) = nullptr;
   /// Null: the law is not a pursuit on a tree.
@@ -165,6 +168,14 @@ std::optional<LinearForm> LinearFormOf(const LawConfig& law);
 /// LawEntry::liars_left_out; nullopt: the law believes all that it hears.
 std::optional<std::size_t> LiarsLeftOutBy(const LawConfig& law);
 std::optional<PursuitForm> PursuitFormOf(const LawConfig& law);
+
+/// The layouts of the rows of numbers that agents perceive at the start (LawEntry::observation), in the order in which
+/// they first appear, and the agents of each, in increasing id.
+struct Perceived {
+  ObservationLayout layout;
+  std::vector<int> ids;
+};
+std::vector<Perceived> PerceivedIn(const Experiment& experiment);
 
 /// Makes the law of agent `id`. The experiment must outlive it. Throws std::logic_error if it is a user's, and the
 /// experiment was read with UserCode::kNeverRuns.

@@ -1,8 +1,11 @@
 #include "experiment/toml/section.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
+#include "base/base64.h"
 #include "experiment/toml/input.h"
 #include "experiment/toml/section_internal.h"
 
@@ -102,20 +105,37 @@ Section::Place Section::PlaceOfText(std::string_view key) const {
 std::string Section::Where(std::string_view key) const { return document_->PlaceText(table_->PlaceOf(key)); }
 
 Section::FileText Section::TextOfFile(std::string_view key, std::string_view text_key) {
-  const std::string path = table_->Read<std::string>(key, "the path of a file", std::nullopt, "", TextIn);
-  const std::filesystem::path file = std::filesystem::path(PlaceOfText(key).folder) / path;
-  std::string text;
-  if (!table_->Wrong(key)) {
-    try {
-      text = ReadRegularFile(file.string());
-      constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors write it
-      if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
-    } catch (const ConfigError& error) {
-      Fail(key, std::string("expected a readable file, got ") + error.what());
-    }
-  }
+  const std::filesystem::path file = FileOf(key);
+  std::string text = ReadFileOf(key, file);
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors write it
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
   table_->Record(text_key, StringToml(text));
   return {text, file.filename().string(), file.parent_path().string()};
+}
+
+Section::FileContents Section::ContentsOfFile(std::string_view key, std::string_view base64_key, std::size_t max) {
+  const std::filesystem::path file = FileOf(key);
+  std::error_code error;
+  if (const auto size = std::filesystem::file_size(file, error); !table_->Wrong(key) && !error && size > max)
+    Fail(key, fmt::format("expected a file of at most {} bytes, which travels with the experiment, got {}", max, size));
+  const std::string bytes = ReadFileOf(key, file);
+  table_->Record(base64_key, StringToml(ToBase64(bytes)));
+  return {bytes, file.filename().string()};
+}
+
+std::filesystem::path Section::FileOf(std::string_view key) {
+  const std::string path = table_->Read<std::string>(key, "the path of a file", std::nullopt, "", TextIn);
+  return std::filesystem::path(PlaceOfText(key).folder) / path;
+}
+
+std::string Section::ReadFileOf(std::string_view key, const std::filesystem::path& file) {
+  if (table_->Wrong(key)) return "";
+  try {
+    return ReadRegularFile(file.string());
+  } catch (const ConfigError& error) {
+    Fail(key, std::string("expected a readable file, got ") + error.what());
+    return "";
+  }
 }
 
 std::string Section::PathOfFile(std::string_view key) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -87,6 +88,13 @@ class Section {
     std::string folder = {};  ///< the folder of the file; "": the current one
   };
   FileText TextOfFile(std::string_view key, std::string_view text_key);
+  /// The contents of the file that `key` names, relative to this document's folder: at most `max` bytes. Resolved() has
+  /// them in base64, under `base64_key`.
+  struct FileContents {
+    std::string bytes;
+    std::string name;  ///< the file's, without its folders
+  };
+  FileContents ContentsOfFile(std::string_view key, std::string_view base64_key, std::size_t max);
   /// The absolute path of the file that `key` names, relative to this document's folder; the file need not exist.
   /// Resolved() has the absolute path. "" after a mistake.
   std::string PathOfFile(std::string_view key);
@@ -152,6 +160,10 @@ class Section {
   Value::Table InTheFile() const;
 
  private:
+  /// The path of the file that `key` names, from this document's folder.
+  std::filesystem::path FileOf(std::string_view key);
+  /// What `file` holds, which `key` names; notes a mistake if it cannot be read.
+  std::string ReadFileOf(std::string_view key, const std::filesystem::path& file);
   friend class ValueTables;
   struct Document;
   struct Table;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "agent/laws/laws.h"
 #include "agent/python/environment.h"
 #include "experiment/agent_ids.h"
 #include "experiment/processes.h"
@@ -100,6 +101,17 @@ std::vector<std::string> DelayLines(const Experiment& experiment) {
   return lines;
 }
 
+Json ObservationsJson(const Experiment& experiment) {
+  Json observations = Json::array();
+  for (const auto& [layout, ids] : PerceivedIn(experiment))
+    observations.push_back({{"agents", ids},
+                            {"layout", layout.Text()},
+                            {"hash", layout.Hash()},
+                            {"numbers", layout.size()},
+                            {"names", layout.Names()}});
+  return observations;
+}
+
 /// The phases after the first.
 Json PhasesJson(const Experiment& experiment, const Prediction& prediction) {
   Json phases = Json::array();
@@ -107,6 +119,7 @@ Json PhasesJson(const Experiment& experiment, const Prediction& prediction) {
     Json json = {{"at_s", experiment.time_s(phase.from)},
                  {"law", phase.experiment->law.name},
                  {"leader", phase.experiment->law.leader},
+                 {"observations", ObservationsJson(*phase.experiment)},
                  {"predicted", PredictionJson(phase.prediction)}};
     AddPredictedFigures(*phase.experiment, phase.prediction, json);
     phases.push_back(std::move(json));
@@ -149,6 +162,7 @@ Json ToJson(const Experiment& experiment, const GraphFacts& facts, const Predict
                {"law", experiment.law.name},
                {"axes", kAxes.Name(experiment.law.axes)},
                {"leader", experiment.law.leader},
+               {"observations", ObservationsJson(experiment)},
                {"graph", ToJson(facts)},
                {"security", SecurityJson(experiment)},
                {"draws", DrawsOf(experiment)},
@@ -171,6 +185,12 @@ void PrintLine(std::string_view label, std::string_view text) {
 std::string LawText(const LawConfig& law) {
   return fmt::format("{}, {}, axes {}", law.name, law.leader > 0 ? fmt::format("leader {}", law.leader) : "no leader",
                      kAxes.Name(law.axes));
+}
+
+void PrintObservations(const Experiment& phase) {
+  for (const auto& [layout, ids] : PerceivedIn(phase))
+    PrintLine("observation", fmt::format("{} numbers, hash {}, of agents {}: {}", layout.size(), layout.Hash(),
+                                         IdRanges(ids), layout.Text()));
 }
 
 void PrintPredictions(const Experiment& phase, const Prediction& prediction) {
@@ -232,6 +252,7 @@ void PrintExperiment(const Experiment& experiment) {
   PrintLine("starts", StartsText(experiment));
   PrintProcesses(experiment);
   PrintLine("law", LawText(experiment.law));
+  PrintObservations(experiment);
   PrintLine("duration", fmt::format("{:g} s, {} ticks at {} Hz", experiment.run.duration_s, experiment.ticks(),
                                     experiment.control.rate_hz));
   PrintLine("seed", SeedText(experiment));
@@ -272,6 +293,7 @@ int Check(ConfigArgs& args, bool json) {
   PrintPredictions(experiment, prediction);
   for (const LaterPhase& phase : prediction.later) {
     PrintLine(fmt::format("from {:g} s", experiment.time_s(phase.from)), LawText(phase.experiment->law));
+    PrintObservations(*phase.experiment);
     PrintPredictions(*phase.experiment, phase.prediction);
   }
   for (const auto& [label, text] : SurvivalLines(experiment, SurvivalOf(experiment))) PrintLine(label, text);

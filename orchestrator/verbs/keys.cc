@@ -9,6 +9,8 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "agent/laws/laws.h"
 #include "orchestrator/formats/whole_file.h"
@@ -100,15 +102,27 @@ struct NewArgs {
   bool force = false;
 };
 
+/// The file that the law of an experiment reads, from the experiment's folder; nullopt: none.
+std::optional<std::string> FileOfLaw(const std::string& experiment) {
+  const Value::Table law = Section::FromFile(experiment).Child("law").InTheFile();
+  const auto file = law.find("file");
+  if (file == law.end()) return std::nullopt;
+  return std::get<std::string>(file->second.data);
+}
+
 int WriteNew(const NewArgs& args) {
   RequireOneOf("new", "a law", args.law, LawNames());
   namespace fs = std::filesystem;
-  const std::string text =
-      NewExperiment(args.law, ReadRegularFile(ExampleOf(args.law, FindShared("configs", ".")).string()));
-  const fs::path path = args.file.empty() ? args.law + ".toml" : args.file;
-  if (fs::exists(path) && !args.force)
-    throw ConfigError({path.string() + ": expected a new file, got one that exists (--force replaces it)"});
-  WriteWhole(path.string(), text);
+  const fs::path example = ExampleOf(args.law, FindShared("configs", ".")),
+                 path = args.file.empty() ? args.law + ".toml" : args.file;
+  std::vector<std::pair<fs::path, std::string>> files = {
+      {path, NewExperiment(args.law, ReadRegularFile(example.string()))}};
+  if (const auto file = FileOfLaw(example.string()))
+    files.emplace_back(path.parent_path() / *file, ReadRegularFile((example.parent_path() / *file).string()));
+  for (const auto& [name, text] : files)
+    if (fs::exists(name) && !args.force)
+      throw ConfigError({name.string() + ": expected a new file, got one that exists (--force replaces it)"});
+  for (const auto& [name, text] : files) WriteWhole(name.string(), text);
   std::cout << fmt::format("{0}: an experiment with {1}; next: orchestrator up {0}\n", path.string(), args.law);
   return 0;
 }

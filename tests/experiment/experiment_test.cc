@@ -783,18 +783,18 @@ TEST(Hosts, AreRefusedWithAgentsOrAddressesThatAreNone) {
 }
 
 TEST(ResolvedExperiment, IsTheSameAgainWhenRead) {
-  std::vector<std::string> texts = {
-      Config(), Config("graph.random = { kind = 'erdos_renyi', p = 0.5 }\nagents.random.min_separation_m = 0.3\n"),
-      Config(
-          "control.altitude = { kp = 1, kd = 2 }\n[agents.airframe]\nbase = 'crazyflie'\nposition = { kp = 3 }\n"
-          "[[agents.override]]\nid = 2\nairframe = { mass_kg = 2 }\n[[agents.override]]\nid = 3\nhost = 'external'\n")};
+  std::vector<Experiment> experiments;
+  for (const std::string& text :
+       {Config(), Config("graph.random = { kind = 'erdos_renyi', p = 0.5 }\nagents.random.min_separation_m = 0.3\n"),
+        Config("control.altitude = { kp = 1, kd = 2 }\n[agents.airframe]\nbase = 'crazyflie'\nposition = { kp = 3 }\n"
+               "[[agents.override]]\nid = 2\nairframe = { mass_kg = 2 }\n[[agents.override]]\nid = 3\nhost = "
+               "'external'\n")})
+    experiments.push_back(Load(text));
   for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs")) {
-    if (entry.path().extension() != ".toml") continue;
-    std::ifstream file(entry.path());
-    texts.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    if (entry.path().extension() == ".toml")
+      experiments.push_back(LoadExperiment(Section::FromFile(entry.path()), "test"));
   }
-  for (const std::string& text : texts) {
-    const Experiment experiment = Load(text);
+  for (const Experiment& experiment : experiments) {
     const std::string resolved = experiment.resolved;
     const Experiment again = Load(resolved, "another name");
     EXPECT_EQ(again.resolved, resolved);

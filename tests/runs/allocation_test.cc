@@ -156,6 +156,9 @@ INSTANTIATE_TEST_SUITE_P(
               "[physics]\nobstacles = [{ shape = 'box', position_m = [0, 0, 30], size_m = [1, 1, 1] }]\n"
               "[sensors]\nrange_m = 50.0\n"
               "[law]\nname = 'avoidance'\ngoals_m = [[9, 9, 1], [-9, 9, 1], [9, -9, 1], [-9, -9, 1]]\n"},
+        Setup{"a policy",
+              "[graph]\ntopology = 'complete'\n"
+              "[law]\nname = 'policy'\nfile = '" MASCOT_SOURCE_DIR "/configs/policy.onnx'\n"},
         Setup{"waypoints with links of limited range",
               "[physics]\ncollisions = false\n[law]\nname = 'waypoint'\nwaypoints_m = [[1, 1, 1], [2, 2, 2]]\n"
               "[graph]\nrange_m = 5.0\n"}),

@@ -292,6 +292,29 @@ TEST(Check, SaysAboutHowLargeTheFilesWillBe) {
   }
 }
 
+TEST(Check, ShowsTheLayoutOfWhatAgentsOfAPolicyPerceive) {
+  const std::string check = std::string(MASCOT_BINARY_DIR) + "/orchestrator check ";
+  const std::string layout =
+      "mascot observation 1: own p 3, v 3, attitude 4; 3 x (p 3, v 3, weight, heard, age, message 0)";
+  EXPECT_THAT(
+      Shell(check + Config("policy")).output,
+      testing::HasSubstr("\n  observation    37 numbers, hash 8e254ebcb6026b10, of agents 1-4: " + layout + "\n"));
+  const auto json = nlohmann::json::parse(Shell(check + "--json " + Config("policy")).output)["observations"];
+  ASSERT_EQ(json.size(), 1U);
+  EXPECT_EQ(json[0]["agents"], nlohmann::json({1, 2, 3, 4}));
+  EXPECT_EQ(json[0]["layout"], layout);
+  EXPECT_EQ(json[0]["hash"], "8e254ebcb6026b10");
+  EXPECT_EQ(json[0]["numbers"], 37);
+  EXPECT_EQ(json[0]["names"].size(), 37U);
+  EXPECT_EQ(json[0]["names"][10], "neighbour[0].p.x");
+  EXPECT_EQ(nlohmann::json::parse(Shell(check + "--json " + Config("leaderless")).output)["observations"],
+            nlohmann::json::array());
+  const std::string later =
+      "--set 'law.schedule=[{ at_s = 5.0, name = \"policy\", file = \"" MASCOT_SOURCE_DIR "/configs/policy.onnx\" }]' ";
+  EXPECT_THAT(Shell(check + later + Config("leaderless")).output,
+              testing::HasSubstr("\n  from 5 s       policy, no leader, axes xy\n  observation    37 numbers"));
+}
+
 TEST(Check, SaysWhatSurvivesTheFaultsOfAnExperiment) {
   const std::string check = std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("faults");
   const Ran said = Shell(check);

@@ -14,6 +14,7 @@
 #include "experiment/live_experiment.h"
 #include "experiment/live_keys.h"
 #include "tests/support/ideal_network.h"
+#include "tests/support/onnx_model.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -92,6 +93,16 @@ std::vector<Setting> PluginSettings() {
           {"leader", base, base + "leader = 2\n"}};
 }
 
+/// Settings for the law that is a network: the consensus law with one gain or another.
+std::vector<Setting> PolicySettings() {
+  const auto law = [](float p_gain) {
+    const std::string hash = ObservationLayout{.places = 2, .message = 0}.Hash();  // on a path
+    const std::string bytes = test::ConsensusNetwork(2, p_gain, 1).Metadata("mascot_observation", hash).Bytes();
+    return "onnx_base64 = '" + ToBase64(bytes) + "'\n";
+  };
+  return {{"onnx_base64", law(0.5), law(0.25)}, {"output", law(0.5), law(0.5) + "output = 'velocity'\n"}};
+}
+
 /// Reads tests/law_settings/LAW.toml. Each of its [keys] has the lines of [law] that change it, added to `base`, or two
 /// sets of lines that differ in it. `experiment`: another team than five on a path.
 Trial ReadTrial(std::string_view law) {
@@ -108,6 +119,7 @@ Trial ReadTrial(std::string_view law) {
 
 Trial TrialOf(std::string_view law) {
   if (law == "custom") return {kFiveOnAPath, CustomSettings()};
+  if (law == "policy") return {kFiveOnAPath, PolicySettings()};
   if (law == "plugin") return {kFiveOnAPath, PluginSettings()};
   return ReadTrial(law);
 }
@@ -140,9 +152,9 @@ TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
       EXPECT_GT(difference, 1e-4) << law.name << " " << setting.parameter;
       tried.push_back(setting.parameter);
     }
-    // These are tested in custom_law_test.cc, custom_text_test.cc and plugin_law_test.cc: files, messages, places of
-    // errors.
-    const std::vector<std::string_view> elsewhere = {"file", "messages", "python_file", "python_line"};
+    // These are tested in custom_law_test.cc, custom_text_test.cc, policy_test.cc and plugin_law_test.cc: files,
+    // messages, places of errors.
+    const std::vector<std::string_view> elsewhere = {"file", "messages", "onnx_file", "python_file", "python_line"};
     std::vector<std::string> named;
     for (const Key& parameter : law.parameters)
       if (std::ranges::find(elsewhere, parameter.name) == elsewhere.end()) named.emplace_back(parameter.name);

@@ -443,6 +443,14 @@ TEST(New, WritesAnExperimentOfEachLawThatIsShipped) {
                            file + ": expected a new file, got one that exists (--force replaces it)"));
     EXPECT_NO_THROW(Printed(SetUpNew, {std::string(law.name), file, "--force"}));
   }
+  const std::string message =
+      folder.File("policy.onnx") + ": expected a new file, got one that exists (--force replaces it)";
+  EXPECT_THAT(
+      [&] {
+        Printed(SetUpNew, {"policy", folder.File("other.toml")});
+      },
+      testing::ThrowsMessage<ConfigError>(message));
+  EXPECT_FALSE(std::filesystem::exists(folder.File("other.toml"))) << "both files, or none";
   EXPECT_THAT([] { Printed(SetUpNew, {"consensu"}); },
               testing::ThrowsMessage<ConfigError>(
                   "new: expected the name of a law, got 'consensu' (did you mean \"consensus\"?)"));
