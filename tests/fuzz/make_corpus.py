@@ -186,10 +186,78 @@ def viewers():
     }
 
 
+# --- networks -----------------------------------------------------------------------------------------------
+
+
+def networks():
+    """Networks of the format ONNX, a few operators in each."""
+    def varint(number):
+        out = bytearray()
+        number &= (1 << 64) - 1
+        while number >= 0x80:
+            out.append(number & 0x7f | 0x80)
+            number >>= 7
+        return bytes(out + bytes([number]))
+
+    def field(number, value):
+        if isinstance(value, int):
+            return varint(number << 3) + varint(value)
+        value = value.encode() if isinstance(value, str) else value
+        return varint(number << 3 | 2) + varint(len(value)) + value
+
+    def port(name, *shape):
+        dims = b"".join(field(1, field(1, length)) for length in shape)
+        return field(1, name) + field(2, field(1, field(1, 1) + field(2, dims)))
+
+    def tensor(name, shape, numbers):
+        is_float = isinstance(numbers[0], float)
+        data = struct.pack(f"<{len(numbers)}{'f' if is_float else 'q'}", *numbers)
+        return b"".join(field(1, n) for n in shape) + field(2, 1 if is_float else 7) + field(8, name) + field(9, data)
+
+    def attribute(name, value):
+        kind = field(3, value) + field(20, 2) if isinstance(value, int) else (
+            b"".join(field(8, one) for one in value) + field(20, 7))
+        return field(5, field(1, name) + kind)
+
+    def node(op, inputs, output, **attributes):
+        return (b"".join(field(1, name) for name in inputs) + field(2, output) + field(4, op)
+                + b"".join(attribute(name, value) for name, value in attributes.items()))
+
+    def model(opset, inputs, nodes, constants=()):
+        parts = [field(1, one) for one in nodes] + [field(5, tensor(*one)) for one in constants]
+        graph = b"".join(parts) + field(11, port("x", 1, inputs)) + field(12, port("y", 1, inputs))
+        return field(1, 7) + field(7, graph) + field(8, field(2, opset)) + field(14, field(1, "k") + field(2, "v"))
+
+    def chain(*ops):
+        return [node(op, ["x" if k == 0 else f"t{k - 1}"], "y" if k == len(ops) - 1 else f"t{k}")
+                for k, op in enumerate(ops)]
+
+    return {
+        "numbers": model(13, 4, chain("Relu", "Tanh", "Sigmoid", "Softplus", "Elu", "LeakyRelu", "Abs", "Neg", "Exp",
+                                      "Sqrt", "Identity", "Clip", "Softmax")),
+        "products": model(13, 2, [node("Gemm", ["x", "w", "b"], "g", transB=1), node("MatMul", ["g", "w"], "m"),
+                                  node("Add", ["m", "b"], "a"), node("Sub", ["a", "x"], "s"),
+                                  node("Div", ["s", "b"], "d"), node("Mul", ["d", "x"], "y")],
+                          [("w", [2, 2], [1.0, 2.0, 3.0, 4.0]), ("b", [2], [1.0, 0.5])]),
+        "moves": model(13, 4, [node("Reshape", ["x", "2x2"], "r"), node("Transpose", ["r"], "t", perm=[1, 0]),
+                               node("Unsqueeze", ["t", "0"], "u"), node("Squeeze", ["u", "0"], "q"),
+                               node("Concat", ["q", "t"], "c", axis=1), node("Slice", ["c", "0", "2", "1", "1"], "s"),
+                               node("Flatten", ["s"], "y", axis=0)],
+                       [("2x2", [2], [2, 2]), ("0", [1], [0]), ("1", [1], [1]), ("2", [1], [2])]),
+        "reductions": model(18, 4, [node("ReduceSum", ["x", "1"], "s", keepdims=1), node("ReduceMax", ["x"], "m"),
+                                    node("ReduceMean", ["x", "1"], "a"), node("Concat", ["s", "m", "a"], "y", axis=1)],
+                            [("1", [1], [1])]),
+        "older": model(9, 4, [node("Slice", ["x"], "s", axes=[1], starts=[0], ends=[2]),
+                              node("ReduceMean", ["s"], "r", axes=[1]), node("Unsqueeze", ["r"], "u", axes=[0]),
+                              node("Squeeze", ["u"], "y", axes=[0])]),
+        "consensus": (ROOT / "configs/policy.onnx").read_bytes(),
+    }
+
+
 def main():
     programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release")
     for name, files in [("samples", samples()), ("recording", recordings(programs)), ("protocols", protocols()),
-                        ("viewers", viewers())]:
+                        ("viewers", viewers()), ("network", networks())]:
         (CORPUS / name).mkdir(parents=True, exist_ok=True)
         for file, data in files.items():
             (CORPUS / name / file).write_bytes(data)
