@@ -1,13 +1,13 @@
 // A law written by the user in Python: control(t, me, neighbours) -> acceleration or velocity in W.
 #include "agent/laws/custom/custom.h"
 
+#include "agent/laws/parts/row_parts.h"
+
 namespace mascot {
 namespace {
 
 constexpr EnumNames<PythonStyle, 2> kPythonStyles({{PythonStyle::kStandard, "standard"},
                                                    {PythonStyle::kMascot, "mascot"}});
-constexpr EnumNames<Wanted, 2> kPythonOutputs({{Wanted::kAcceleration, "acceleration"},
-                                               {Wanted::kVelocity, "velocity"}});
 
 constexpr Key kCustomParameters[] = {
     key::Text("python",
@@ -28,7 +28,7 @@ constexpr Key kCustomParameters[] = {
                "mascot: the published testbed's control_user(pos_x, vel_x, acc_x, pos_y, vel_y, acc_y, i, num_agent, "
                "leader)")
         .Default("\"standard\""),
-    key::OneOf("output", kPythonOutputs.names(), "what control returns, 3 numbers or 2 (x, y), in W")
+    key::OneOf("output", kOutputs.names(), "what control returns, 3 numbers or 2 (x, y), in W")
         .Default("\"acceleration\""),
     key::Boolean("messages", "whether it sends messages").Otherwise("whether it defines message"),
     key::Integer("leader", 0, kMaxAgents,
@@ -71,11 +71,7 @@ bool AsksPython(const Experiment& experiment) {
 void ReadText(const Experiment& experiment, Section& law, CustomParams& params) {
   law.Supersede("file", {"python", "python_file", "python_line", "modules"});
   law.Supersede("python", {"file", "python_file", "python_line", "modules"});
-  if (law.Has("python") == law.Has("file")) {
-    law.Fail(law.Has("file") ? "file" : "",
-             std::string("expected one of python, file, got ") + (law.Has("file") ? "both" : "none"));
-    return;
-  }
+  if (!HasOneOf(law, "python", "file", "file")) return;
   Section::FileText text;
   int line = 1;
   if (law.Has("file")) {
@@ -96,7 +92,7 @@ void ReadKeys(const Experiment& experiment, Section& law, CustomParams& params) 
   ReadText(experiment, law, params);
   params.data = ReadLawData(law);
   params.style = kPythonStyles.Value(law.OneOf("style"));
-  params.wanted = kPythonOutputs.Value(law.OneOf("output"));
+  params.wanted = kOutputs.Value(law.OneOf("output"));
   if (law.Has("params") && law.Kind("params") != "table")
     law.Fail("params", "expected a table, got a " + law.Kind("params"));
   else

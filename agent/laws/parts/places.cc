@@ -4,6 +4,8 @@
 #include <numbers>
 #include <string>
 
+#include "agent/laws/parts/row_parts.h"
+
 namespace mascot {
 namespace {
 
@@ -31,11 +33,8 @@ std::vector<Eigen::Vector3d> ReadPlaces(Section& law, int agents, PlaceScale sca
   const auto count = static_cast<std::size_t>(agents);
   law.Supersede("offsets_m", {"shape", "spacing_m"});
   law.Supersede("shape", {"offsets_m"});
-  if (law.Has("offsets_m") == law.Has("shape")) {
-    law.Fail(law.Has("shape") ? "shape" : "",
-             std::string("expected one of offsets_m, shape, got ") + (law.Has("shape") ? "both" : "none"));
+  if (!HasOneOf(law, "offsets_m", "shape", "shape"))
     return std::vector<Eigen::Vector3d>(count, Eigen::Vector3d::Zero());
-  }
   std::vector<Eigen::Vector3d> places;
   if (law.Has("shape")) {
     const std::string shape = law.OneOf("shape");

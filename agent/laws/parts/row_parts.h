@@ -3,11 +3,13 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "agent/laws/laws.h"
 #include "agent/laws/parts/rounding.h"
+#include "base/enum_names.h"
 
 namespace mascot {
 
@@ -40,6 +42,21 @@ inline std::vector<PredictedFigure> Equal(std::vector<FigureValues> figures) {
 
 /// LawEntry::wanted for a law that always wants a velocity.
 inline Wanted WantsVelocity(const LawConfig& /*law*/) { return Wanted::kVelocity; }
+
+/// Names of what a law wants that lets the user choose it (law.output).
+inline constexpr EnumNames<Wanted, 2> kOutputs({{Wanted::kAcceleration, "acceleration"},
+                                                {Wanted::kVelocity, "velocity"}});
+
+/// Whether the law has one of two keys. Else notes a mistake: at the key `twice` if it has both, at `none` ("": the
+/// table) if it has none.
+inline bool HasOneOf(Section& law, std::string_view one, std::string_view other, std::string_view twice,
+                     std::string_view none = "") {
+  const bool has_one = law.Has(one), has_other = law.Has(other);
+  if (has_one != has_other) return true;
+  law.Fail(has_one ? twice : none,
+           "expected one of " + std::string(one) + ", " + std::string(other) + ", got " + (has_one ? "both" : "none"));
+  return false;
+}
 
 /// Notes a mistake if law.leader names an agent, in laws that have no single leader.
 inline void ExpectNoLeader(const LawConfig& law, Section& section) {

@@ -12,14 +12,11 @@
 #include "agent/laws/parts/row_parts.h"
 #include "agent/network/network.h"
 #include "base/base64.h"
-#include "base/enum_names.h"
 #include "base/utf8.h"
 
 namespace mascot {
 namespace {
 
-constexpr EnumNames<Wanted, 2> kPolicyOutputs({{Wanted::kAcceleration, "acceleration"},
-                                               {Wanted::kVelocity, "velocity"}});
 constexpr std::size_t kMaxPolicy = std::size_t{4} << 20;       // bytes of a file
 constexpr const char* kObservationKey = "mascot_observation";  // in the file's metadata: the layout's hash
 
@@ -27,7 +24,7 @@ constexpr Key kPolicyParameters[] = {
     key::Text("file", "the network, in the format ONNX; its path from the folder of this file"),
     key::Text("onnx_base64", "the contents of the file in base64").Otherwise("what the file holds"),
     key::Text("onnx_file", "what the network goes by in messages").Otherwise("the name of the file"),
-    key::OneOf("output", kPolicyOutputs.names(), "what the first three numbers of its answer are, in W")
+    key::OneOf("output", kOutputs.names(), "what the first three numbers of its answer are, in W")
         .Default("\"acceleration\""),
 };
 
@@ -63,11 +60,7 @@ class Policy final : public Law {
 std::optional<Section::FileContents> ReadContents(Section& law) {
   law.Supersede("file", {"onnx_base64", "onnx_file"});
   law.Supersede("onnx_base64", {"file", "onnx_file"});
-  if (law.Has("file") == law.Has("onnx_base64")) {
-    law.Fail(law.Has("file") ? "file" : "",
-             std::string("expected one of file, onnx_base64, got ") + (law.Has("file") ? "both" : "none"));
-    return std::nullopt;
-  }
+  if (!HasOneOf(law, "file", "onnx_base64", "file")) return std::nullopt;
   Section::FileContents contents;
   if (law.Has("file")) {
     contents = law.ContentsOfFile("file", "onnx_base64", kMaxPolicy);
@@ -85,7 +78,7 @@ std::optional<Section::FileContents> ReadContents(Section& law) {
 
 std::shared_ptr<const LawParams> ReadPolicy(const Experiment& experiment, const LawConfig& /*law*/, Section& section) {
   auto params = std::make_shared<PolicyParams>();
-  params->wanted = kPolicyOutputs.Value(section.OneOf("output"));
+  params->wanted = kOutputs.Value(section.OneOf("output"));
   const std::string key = section.Has("file") ? "file" : "onnx_base64";
   const auto contents = ReadContents(section);
   if (!contents) return params;

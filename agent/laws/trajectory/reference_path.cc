@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "agent/laws/parts/row_parts.h"
 #include "agent/laws/trajectory/sampled_pd.h"
 
 namespace mascot {
@@ -13,11 +14,7 @@ namespace {
 std::optional<PathSamples> ReadSamples(Section& law) {
   law.TakeOneOf({"file", "samples"});
   const bool in_file = law.Has("file");
-  if (in_file == law.Has("samples")) {
-    law.Fail(in_file ? "file" : "path",
-             std::string("expected one of samples, file, got ") + (in_file ? "both" : "none"));
-    return std::nullopt;
-  }
+  if (!HasOneOf(law, "samples", "file", "file", "path")) return std::nullopt;
   const Section::FileText text =
       in_file ? law.TextOfFile("file", "samples") : Section::FileText{law.Text("samples"), ""};
   if (law.Wrong(in_file ? "file" : "samples")) return std::nullopt;
