@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 #include <protozero/pbf_reader.hpp>
+#include <span>
 #include <utility>
 
 #include "agent/network/graph.h"
@@ -43,8 +44,10 @@ constexpr const char* kDataTypes[] = {"UNDEFINED", "FLOAT",  "UINT8",     "INT8"
                                       "INT32",     "INT64",  "STRING",    "BOOL",       "FLOAT16", "DOUBLE",
                                       "UINT32",    "UINT64", "COMPLEX64", "COMPLEX128", "BFLOAT16"};
 
-std::string DataTypeName(int type) {
-  return type >= 0 && type < std::ssize(kDataTypes) ? kDataTypes[type] : fmt::format("type {}", type);
+/// The name of a value of an enumeration whose names begin at 0.
+std::string NameOf(std::span<const char* const> names, int value) {
+  return value >= 0 && value < std::ssize(names) ? names[static_cast<std::size_t>(value)]
+                                                 : fmt::format("type {}", value);
 }
 
 /// The numbers of `raw`, which are of type Number.
@@ -142,8 +145,8 @@ struct TensorFields {
       case kDouble:
         return raw_data ? FromRaw<double>(*raw_data) : double_data;
       default:
-        throw NetworkError(
-            fmt::format("expected numbers of type FLOAT, DOUBLE, INT64 or INT32, got {}", DataTypeName(data_type)));
+        throw NetworkError(fmt::format("expected numbers of type FLOAT, DOUBLE, INT64 or INT32, got {}",
+                                       NameOf(kDataTypes, data_type)));
     }
   }
 };
@@ -230,9 +233,7 @@ std::pair<std::string, Attribute> ToAttribute(Reader message) {
     case 7:
       return {name, integers};
     default:
-      throw NetworkError(fmt::format(
-          "attribute {}: expected numbers, got {}", name,
-          type >= 0 && type < std::ssize(kAttributeTypes) ? kAttributeTypes[type] : fmt::format("type {}", type)));
+      throw NetworkError(fmt::format("attribute {}: expected numbers, got {}", name, NameOf(kAttributeTypes, type)));
   }
 }
 
@@ -297,7 +298,7 @@ TensorShape ToShape(Reader message) {
     return true;
   });
   if (type != kFloat && type != kDouble)
-    throw NetworkError(fmt::format("expected numbers of type FLOAT or DOUBLE, got {}", DataTypeName(type)));
+    throw NetworkError(fmt::format("expected numbers of type FLOAT or DOUBLE, got {}", NameOf(kDataTypes, type)));
   return lengths;
 }
 

@@ -377,6 +377,9 @@ TEST(Network, NamesOutOfTheFileAreFitForALine) {
 }
 
 TEST(Network, WhatIsNoNetworkFromARowToARowIsRefusedInWords) {
+  const auto axis_of_input = [](OnnxModel & model, int axis) -> auto& {
+    return *model.graph().mutable_input(0)->mutable_type()->mutable_tensor_type()->mutable_shape()->mutable_dim(axis);
+  };
   EXPECT_EQ(RefusalOf("Relu", {"x"}, {}, {}, /*opset=*/8), "expected operators of version (opset) 9 to 21, got 8");
   EXPECT_EQ(RefusalOf("Relu", {"x"}, {}, {}, /*opset=*/22), "expected operators of version (opset) 9 to 21, got 22");
   EXPECT_EQ(RefusalOf("Relu", {"z"}), "node 1 (Relu): expected a tensor z from a node before, got none");
@@ -391,25 +394,9 @@ TEST(Network, WhatIsNoNetworkFromARowToARowIsRefusedInWords) {
   EXPECT_EQ(RefusalOf([](OnnxModel& model) { model.Node("Relu", {"x"}, "y").Output("y", 4).Output("x", 4); }),
             "expected one output, got 2");
   EXPECT_EQ(RefusalOf([](OnnxModel& model) { model.graph().clear_input(); }), "expected one input, got 0");
-  EXPECT_EQ(RefusalOf([](OnnxModel& model) {
-              model.graph()
-                  .mutable_input(0)
-                  ->mutable_type()
-                  ->mutable_tensor_type()
-                  ->mutable_shape()
-                  ->mutable_dim(0)
-                  ->set_dim_value(2);
-            }),
+  EXPECT_EQ(RefusalOf([&](OnnxModel& model) { axis_of_input(model, 0).set_dim_value(2); }),
             "input x: expected one row of numbers, [n] or [batch, n], got [2, 4]");
-  EXPECT_EQ(RefusalOf([](OnnxModel& model) {
-              model.graph()
-                  .mutable_input(0)
-                  ->mutable_type()
-                  ->mutable_tensor_type()
-                  ->mutable_shape()
-                  ->mutable_dim(1)
-                  ->set_dim_param("n");
-            }),
+  EXPECT_EQ(RefusalOf([&](OnnxModel& model) { axis_of_input(model, 1).set_dim_param("n"); }),
             "input x: expected one row of numbers, [n] or [batch, n], got [1, ?]");
   EXPECT_EQ(RefusalOf([](OnnxModel& model) {
               model.Integers("s", {2, 2}).Node("Reshape", {"x", "s"}, "y");
