@@ -494,6 +494,11 @@ class ThisTree(HouseTest):
         text = (ROOT / DOCUMENT).read_text()
         self.check([*faults_of_paths(ROOT, text), *faults_of_whereabouts(ROOT, text)])
 
+    def test_the_ros_package_lists_each_of_its_messages(self):
+        package = ROOT / "idl/mascot_msgs"
+        listed = re.findall(r"^  (msg/\w+\.msg)$", (package / "CMakeLists.txt").read_text(), re.M)
+        self.assertEqual(listed, sorted(path.relative_to(package).as_posix() for path in package.rglob("*.msg")))
+
     def test_json_from_outside_is_read_in_one_place(self):
         self.assertTrue((ROOT / JSON_READER).exists())
         self.check(faults_of_json(ROOT))
