@@ -81,20 +81,20 @@ void Agent::AdoptSensorFault(const Experiment& now) {
 
 bool Agent::AsksCodeOfUser() const { return EntryOf(config_->law).is_of_user; }
 
-Eigen::Vector3d Agent::AskLaw(std::int64_t tick, const Motion& measured, std::span<const Heard> heard) {
-  const double t_s = static_cast<double>(tick) / rate_hz_;
+Eigen::Vector3d Agent::AskLaw() {
+  const double t_s = static_cast<double>(tick_) / rate_hz_;
   message_ = {};
   if (!IsOn(*config_, t_s)) {
     wanted_ = Wanted::kVelocity;
     return Eigen::Vector3d::Zero();
   }
   wanted_ = law_->wanted();
-  if (ranges_.is_on()) AtTick(tick, [&] { law_->See(ranges_.Sense(measured.p_WB)); });
-  const double law_t_s = static_cast<double>(tick - config_->law.since) / rate_hz_;
-  Eigen::Vector3d w_W = AtTick(tick, [&] { return law_->Want_W(law_t_s, measured, heard); });
+  if (ranges_.is_on()) AtTick(tick_, [&] { law_->See(ranges_.Sense(measured_.p_WB)); });
+  const double law_t_s = static_cast<double>(tick_ - config_->law.since) / rate_hz_;
+  Eigen::Vector3d w_W = AtTick(tick_, [&] { return law_->Want_W(law_t_s, measured_, heard_); });
   if (holds_altitude_) w_W.z() = 0;
-  if (!w_W.allFinite()) ThrowNotFinite(tick, id_, wanted_, w_W);
-  if (config_->law.params->sends_messages) message_ = AtTick(tick, [&] { return law_->Message(); });
+  if (!w_W.allFinite()) ThrowNotFinite(tick_, id_, wanted_, w_W);
+  if (config_->law.params->sends_messages) message_ = AtTick(tick_, [&] { return law_->Message(); });
   return w_W;
 }
 
@@ -149,13 +149,17 @@ void Agent::Integrate(const Eigen::Vector3d& a_W, Command& command) {
   command.a_limited_W = cut.select((command.v_limited_W - v_integrated_W_) * rate_hz_, command.a_limited_W).eval();
 }
 
-Command Agent::Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
+void Agent::Sense(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
+  tick_ = tick;
   heard_ = neighbours_.Hear(tick, self, samples);
   measured_ = sensor_.Measure(tick, self);
   if (faulty_sensor_) measured_ = faulty_sensor_->Measure(tick, measured_);
   has_measured_ = true;
   if (std::exchange(is_restarted_, false)) v_integrated_W_ = measured_.v_WB;
-  const Eigen::Vector3d w_W = AskLaw(tick, measured_, heard_);
+}
+
+Command Agent::Decide() {
+  const Eigen::Vector3d w_W = AskLaw();
   Command command;
   if (driven_by_ == Wanted::kVelocity && wanted_ == Wanted::kVelocity)
     LimitVelocity(w_W, command);

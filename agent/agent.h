@@ -21,23 +21,34 @@ class Agent {
   Agent(const Experiment& experiment, int id);
 
   int id() const { return id_; }
-  /// Whether the agent answers nothing: its Want() must not be called.
+  /// Whether the agent answers nothing: its Decide() must not be called.
   bool is_lost() const { return config_->faults.is_lost(); }
   /// Whether the law runs code that a user has written.
   bool AsksCodeOfUser() const;
-  /// Call it when events have changed the experiment: from the next Want() on, the experiment is `now`. If a fresh
+  /// Call it when events have changed the experiment: from the next Sense() on, the experiment is `now`. If a fresh
   /// agent has taken this one's place, all that this one remembers is forgotten.
   void Adopt(std::shared_ptr<const Experiment> now);
-  /// Evaluates the law and its limits: fills in the command's accelerations, velocities and their flags. `self` is the
+  /// Measures the agent's own motion and hears its neighbours: call it once at a tick, before Decide(). `self` is the
   /// true motion at `tick`, `samples` are what the agents in graph.HeardBy(id) sent at this tick, in that order. Ticks
-  /// increase from call to call. Throws std::runtime_error naming agent and tick if the law fails or its answer is not
-  /// finite.
-  Command Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
-  /// What the low-level stack gets for `command`, which the last Want() returned. Valid until the next call.
+  /// increase from call to call.
+  void Sense(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
+  /// What the law gets at the tick of the last Sense(): the measured motion, and what was heard (valid until the next
+  /// Sense()).
+  const Motion& measured() const { return measured_; }
+  std::span<const Heard> heard() const { return heard_; }
+  /// Evaluates the law and its limits at the tick of the last Sense(): fills in the command's accelerations, velocities
+  /// and their flags. Throws std::runtime_error naming agent and tick if the law fails or its answer is not finite.
+  Command Decide();
+  /// Sense(), then Decide().
+  Command Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
+    Sense(tick, self, samples);
+    return Decide();
+  }
+  /// What the low-level stack gets for `command`, which the last Decide() returned. Valid until the next call.
   Controller::Input Driven(const Command& command) const {
     return {&measured_, driven_by_ == Wanted::kVelocity ? command.v_limited_W : command.a_limited_W};
   }
-  /// The message that the law sends after the last Want(); empty: none. Valid until the next call.
+  /// The message that the law sends after the last Decide(); empty: none. Valid until the next call.
   std::span<const double> message() const { return message_; }
   /// Counters of the edges from graph.HeardBy(id), in that order.
   std::vector<EdgeCount> counts() const { return neighbours_.counts(); }
@@ -45,7 +56,7 @@ class Agent {
  private:
   void AdoptSensorFault(const Experiment& now);
   /// What the law wants, checked to be finite; velocity 0 while the law is off (start_s, stop_s).
-  Eigen::Vector3d AskLaw(std::int64_t tick, const Motion& measured, std::span<const Heard> heard);
+  Eigen::Vector3d AskLaw();
   void LimitAcceleration(const Eigen::Vector3d& a_W, Command& command);
   void LimitVelocity(const Eigen::Vector3d& v_W, Command& command);
   void AccelerateTowards(const Eigen::Vector3d& v_W, Command& command);
@@ -69,6 +80,7 @@ class Agent {
   OwnSensor sensor_;
   std::optional<FaultySensor> faulty_sensor_;
   RangeSensor ranges_;
+  std::int64_t tick_ = -1;  // of the last Sense()
   Motion measured_;
   bool has_measured_ = false;
   bool is_restarted_ = false;  // and has not answered yet

@@ -38,7 +38,19 @@ void Team::ForEachPart(Work&& work) {
     for (Part& part : parts_) work(part);
   else
     crew_.Do(parts_.size(), [&](std::size_t k) { work(parts_[k]); });
-  exchange_.EndTick();
+}
+
+void Team::Sense(std::int64_t tick, std::span<const Motion> motions, int id, std::vector<Sample>& samples) {
+  const auto i = static_cast<std::size_t>(id - 1);
+  agents_[i]->Sense(tick, motions[i], exchange_.SamplesFor(id, motions, samples));
+}
+
+void Team::Sense(std::int64_t tick, std::span<const Motion> motions) {
+  ForEachPart([&](Part& part) {
+    for (int id = part.ids.first; id <= part.ids.last; ++id)
+      if (!agents_[static_cast<std::size_t>(id - 1)]->is_lost()) Sense(tick, motions, id, part.samples);
+  });
+  sensed_ = tick;
 }
 
 void Team::Decide(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands,
@@ -48,12 +60,14 @@ void Team::Decide(std::int64_t tick, std::span<const Motion> motions, std::span<
     Want(tick, motions, commands, part, failures != nullptr);
     Actuate(commands, part);
   });
+  exchange_.EndTick();
   CollectFailures(failures);
 }
 
 void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands,
                 std::vector<Failure>* failures) {
   ForEachPart([&](Part& part) { Want(tick, motions, commands, part, failures != nullptr); });
+  exchange_.EndTick();
   CollectFailures(failures);
 }
 
@@ -81,7 +95,8 @@ void Team::Want(std::int64_t tick, std::span<const Motion> motions, std::span<Co
     }
     Agent& agent = *agents_[i];
     try {
-      commands[i] = agent.Want(tick, motions[i], exchange_.SamplesFor(id, motions, part.samples));
+      if (sensed_ != tick) Sense(tick, motions, id, part.samples);
+      commands[i] = agent.Decide();
     } catch (const std::exception& failure) {
       if (!failures_count) throw;
       part.failures.push_back({id, failure.what()});

@@ -30,6 +30,11 @@ class Team {
 
   /// Call it when events have changed the experiment: from the next tick on, the experiment is `now`.
   void Adopt(const std::shared_ptr<const Experiment>& now);
+  /// Lets all agents measure and hear at this tick, before Decide() or Want(), which do it otherwise. Agents that are
+  /// lost do not.
+  void Sense(std::int64_t tick, std::span<const Motion> motions);
+  /// As it is after the last Sense(), or the last tick.
+  const Agent& agent(int id) const { return *agents_[static_cast<std::size_t>(id - 1)]; }
   /// The complete commands of all agents, by id - 1. `motions`: their states at this tick. Messages that are sent
   /// during this tick arrive at the next one. Agents that are lost, or in `silent`, decide nothing and send nothing;
   /// their commands stay as they are. `failures` gets the agents whose laws fail, by increasing id; until the next
@@ -61,6 +66,7 @@ class Team {
   bool AnyAsksCodeOfUser() const;
   template <class Work>
   void ForEachPart(Work&& work);
+  void Sense(std::int64_t tick, std::span<const Motion> motions, int id, std::vector<Sample>& samples);
   void Want(std::int64_t tick, std::span<const Motion> motions, std::span<Command> commands, Part& part,
             bool failures_count);
   void CollectFailures(std::vector<Failure>* failures);
@@ -68,6 +74,7 @@ class Team {
 
   Crew& crew_;
   bool takes_turns_ = false;
+  std::int64_t sensed_ = -1;        // tick of the last Sense()
   std::vector<char> has_answered_;  // by id - 1; no vector<bool>: threads write it
   std::vector<std::unique_ptr<Agent>> agents_;
   std::vector<Part> parts_;
