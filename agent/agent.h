@@ -36,6 +36,8 @@ class Agent {
   /// Sense()).
   const Motion& measured() const { return measured_; }
   std::span<const Heard> heard() const { return heard_; }
+  /// What somebody outside wants of the agent (Law::Act), from the next Decide() on.
+  void Act(std::span<const double> action) { law_->Act(action); }
   /// Evaluates the law and its limits at the tick of the last Sense(): fills in the command's accelerations, velocities
   /// and their flags. Throws std::runtime_error naming agent and tick if the law fails or its answer is not finite.
   Command Decide();

@@ -46,8 +46,8 @@ void SetCommon(Qos& qos, const TopicTraits& traits, int depth, Redelivery redeli
 /// readers, hundreds in the recorder's process.
 std::int16_t ReaderNumber(const Topic& topic) {
   constexpr int kFirst = 256;    // smaller ids are those that Fast DDS picks
-  constexpr int kAgents = 5400;  // six kinds of topics have agents, and are the first of TopicKind
-  static_assert(static_cast<int>(TopicKind::kState) == 5 && kFirst + 6 * kAgents < 32768);
+  constexpr int kAgents = 4600;  // seven kinds of topics have agents, and are the first of TopicKind
+  static_assert(static_cast<int>(TopicKind::kState) == 6 && kFirst + 7 * kAgents < 32768);
   const bool of_agents = topic.agent > 0 && topic.agent < kAgents;
   if (!of_agents) return -1;
   return static_cast<std::int16_t>(kFirst + kAgents * static_cast<int>(topic.kind) + topic.agent);

@@ -23,14 +23,16 @@ inline constexpr std::array<std::uint8_t, 4> kEncapsulation = {0, 1, 0, 0};
 
 inline constexpr std::size_t kStateBody = 152, kCommandBody = 104, kClockBody = 8;  // bytes
 inline constexpr std::size_t kMaxNumbers = 64;                                      ///< of a message
-/// Bytes of the body of a message of so many numbers.
+inline constexpr std::size_t kMaxActionNumbers = 3 + kMaxNumbers;                   ///< of an action
+/// Bytes of the body of a message of so many numbers. An action is laid out like a message.
 constexpr std::size_t MessageBody(std::size_t numbers) { return 24 + sizeof(double) * numbers; }
 
-/// What the bodies of states, commands and messages begin with.
+/// What the bodies of states, commands, messages and actions begin with.
 struct BodyHead {
   std::uint64_t tick = 0;
   std::uint32_t agent = 0;
-  std::uint32_t more = 0;  ///< of a state, the events so far; of a command, its flags; of a message, its numbers
+  std::uint32_t more =
+      0;  ///< of a state, the events so far; of a command, its flags; of a message or an action, its numbers
 };
 BodyHead HeadOf(const std::uint8_t* body);
 

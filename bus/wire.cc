@@ -251,6 +251,9 @@ void Serialize(mascot_msgs::msg::AgentCommand& sample, std::vector<std::uint8_t>
 void Serialize(mascot_msgs::msg::AgentMessage& sample, std::vector<std::uint8_t>& bytes) {
   SerializeAs<MessageType>(sample, bytes);
 }
+void Serialize(mascot_msgs::msg::AgentAction& sample, std::vector<std::uint8_t>& bytes) {
+  SerializeAs<ActionType>(sample, bytes);
+}
 void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& bytes) {
   SerializeAs<ClockType>(sample, bytes);
 }
@@ -266,6 +269,9 @@ void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentCom
 }
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentMessage& sample) {
   DeserializeAs<MessageType>(bytes, sample, Size::kBounded);
+}
+void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentAction& sample) {
+  DeserializeAs<ActionType>(bytes, sample, Size::kBounded);
 }
 void Deserialize(std::span<const std::uint8_t> bytes, rosgraph_msgs::msg::Clock& sample) {
   DeserializeAs<ClockType>(bytes, sample);

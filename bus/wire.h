@@ -22,6 +22,7 @@ using BundleType = mascot_msgs::msg::BundlePubSubType;
 using RowType = mascot_msgs::msg::TickRowPubSubType;
 using CommandType = mascot_msgs::msg::AgentCommandPubSubType;
 using MessageType = mascot_msgs::msg::AgentMessagePubSubType;
+using ActionType = mascot_msgs::msg::AgentActionPubSubType;
 using ClockType = rosgraph_msgs::msg::ClockPubSubType;
 using EventType = mascot_msgs::msg::EventPubSubType;
 using StatusType = mascot_msgs::msg::StatusPubSubType;
@@ -33,6 +34,8 @@ template <>
 struct SequenceOf<MessageType> {
   static constexpr std::size_t kAt = 24, kElement = sizeof(double);
 };
+template <>
+struct SequenceOf<ActionType> : SequenceOf<MessageType> {};
 template <>
 struct SequenceOf<StatusType> {
   static constexpr std::size_t kAt = 4, kElement = 44;
@@ -100,12 +103,14 @@ Event FromWire(const mascot_msgs::msg::Event& sample, int agents, int number, st
 void Serialize(mascot_msgs::msg::AgentState& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(mascot_msgs::msg::AgentCommand& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(mascot_msgs::msg::AgentMessage& sample, std::vector<std::uint8_t>& bytes);
+void Serialize(mascot_msgs::msg::AgentAction& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(rosgraph_msgs::msg::Clock& sample, std::vector<std::uint8_t>& bytes);
 void Serialize(mascot_msgs::msg::Event& sample, std::vector<std::uint8_t>& bytes);
 /// The inverse of Serialize(). Throws std::runtime_error if `bytes` is not a sample of this type.
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentState& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentCommand& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentMessage& sample);
+void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::AgentAction& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, rosgraph_msgs::msg::Clock& sample);
 void Deserialize(std::span<const std::uint8_t> bytes, mascot_msgs::msg::Event& sample);
 

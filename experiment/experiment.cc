@@ -1,5 +1,7 @@
 #include "experiment/experiment.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +10,19 @@
 namespace mascot {
 
 std::int64_t Experiment::ticks() const { return std::llround(run.duration_s * control.rate_hz); }
+
+bool TakesActions(const Experiment& experiment) {
+  return std::ranges::any_of(experiment.agents, &AgentConfig::takes_actions);
+}
+
+void RefuseActions(const Experiment& experiment) {
+  const auto taker = std::ranges::find_if(experiment.agents, &AgentConfig::takes_actions);
+  if (taker == experiment.agents.end()) return;
+  throw ConfigError(
+      {fmt::format("law.name: expected laws that decide by themselves, got one of agent {} that takes "
+                   "actions: a program that steps the run gives them, this command does not",
+                   taker->id)});
+}
 
 std::string LossThatEndsTheRun(const Experiment& now) {
   if (now.run.on_agent_loss != OnAgentLoss::kAbort) return "";

@@ -88,7 +88,8 @@ struct ControlConfig {
 struct LawParams {
   virtual ~LawParams() = default;
   bool sends_messages = false;
-  std::string fixed;               ///< why no event can change law.params, as far as is known; empty: one can
+  std::size_t action = 0;  ///< how many numbers an action has that somebody outside gives the law; 0: it takes none
+  std::string fixed;       ///< why no event can change law.params, as far as is known; empty: one can
   std::vector<std::string> files;  ///< absolute paths of files that the law depends on; their contents are not in here
 };
 
@@ -116,6 +117,7 @@ struct AgentConfig {
   std::vector<Eigen::Vector3d> waypoints_W = {};
   bool has_own_law = false;     ///< `law` is the agent's own, not the team's
   bool sends_messages = false;  ///< the agent's law sends messages in some phase: the agent has a topic for them
+  bool takes_actions = false;   ///< the agent's law takes actions in some phase: the agent has a topic for them
   /// From start_s to stop_s the agent's law is on, and other agents may hear it; before start_s and from stop_s on, the
   /// agent is commanded the velocity 0.
   double start_s = 0;
@@ -223,6 +225,10 @@ struct Experiment {
   int steps_per_tick() const { return physics.rate_hz / control.rate_hz; }
 };
 
+/// Whether agents take actions (LawParams::action), at the start or later.
+bool TakesActions(const Experiment& experiment);
+/// Throws ConfigError if agents take actions, for commands that give none.
+void RefuseActions(const Experiment& experiment);
 /// Why run.on_agent_loss ends the run; empty: it does not.
 std::string LossThatEndsTheRun(const Experiment& now);
 /// What becomes of an agent that is lost, in words, where the run goes on.

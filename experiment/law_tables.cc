@@ -11,6 +11,12 @@
 namespace mascot {
 namespace {
 
+/// The agent has the topics that a law of one of its phases needs.
+void NoteTopics(const LawParams& params, AgentConfig& agent) {
+  agent.sends_messages = agent.sends_messages || params.sends_messages;
+  agent.takes_actions = agent.takes_actions || params.action > 0;
+}
+
 /// The table `safety` of a law table; nullopt: it has none.
 std::optional<Section> SafetyOf(std::optional<Section> law) {
   return law && law->Has("safety") ? std::optional(law->Child("safety")) : std::nullopt;
@@ -80,7 +86,7 @@ class ScheduleReader {
       law.params = laws_->Read(With(law), law, phase);
       event.files = law.params->files;
       for (AgentConfig& agent : experiment_.agents)
-        if (Concerns(agent)) agent.sends_messages = agent.sends_messages || law.params->sends_messages;
+        if (Concerns(agent)) NoteTopics(*law.params, agent);
       phase.Done();
     }
     before_ = std::move(law);
@@ -169,7 +175,7 @@ void ReadLawParameters(const LawCatalog& laws, Section& team, std::vector<AgentO
     LawConfig& own = experiment.agents[static_cast<std::size_t>(override.id - 1)].law;
     own.params = laws.Read(experiment, own, *override.law);
   }
-  for (AgentConfig& agent : experiment.agents) agent.sends_messages = agent.law.params->sends_messages;
+  for (AgentConfig& agent : experiment.agents) NoteTopics(*agent.law.params, agent);
 }
 
 std::vector<Event> ReadLawSchedules(const LawCatalog* laws, Section& team, std::vector<AgentOverride>& overrides,

@@ -24,8 +24,9 @@ void ReadOwnLaw(AgentOverride& override, const Section& team, int count, const L
 void ReadLawParameters(const LawCatalog& laws, Section& team, std::vector<AgentOverride>& overrides,
                        Experiment& experiment);
 /// Reads [[law.schedule]], the team's and those of agents, as events; after ReadLawParameters(). Agents that send
-/// messages in some phase get AgentConfig::sends_messages. If `laws` is null, the document is a resolved one, and its
-/// tables are not read further. If `rate_hz` is 0, times are unknown because of a mistake.
+/// messages or take actions in some phase get AgentConfig::sends_messages and takes_actions. If `laws` is null, the
+/// document is a resolved one, and its tables are not read further. If `rate_hz` is 0, times are unknown because of a
+/// mistake.
 std::vector<Event> ReadLawSchedules(const LawCatalog* laws, Section& team, std::vector<AgentOverride>& overrides,
                                     int rate_hz, std::int64_t last_tick, Experiment& experiment);
 

@@ -8,6 +8,15 @@ namespace {
 // In the order of TopicKind. The samples in answers, bundles and rows are recorded as those of the topics that they
 // stand for.
 constexpr TopicTraits kKinds[] = {
+    {.kind = TopicKind::kAction,
+     .name = "action",
+     .per_agent = true,
+     .type = "mascot_msgs/msg/AgentAction",
+     .writer = TopicWriter::kOrchestrator,
+     .rhythm = TopicRhythm::kAnswer,
+     .writer_depth = kHistoryDepth,
+     .reader_depth = 8,
+     .is_recorded = true},
     {.kind = TopicKind::kAnswers,
      .name = "answers",
      .per_process = true,

@@ -18,6 +18,7 @@ std::optional<AgentRange> AgentsOf(std::string_view process);
 
 /// What a topic carries. In a recording the topics of one agent are in this order, which is that of their names.
 enum class TopicKind {
+  kAction,
   kAnswers,
   kBundle,
   kCommand,
@@ -85,6 +86,7 @@ struct Topic {
   int agent = 0;
   int last = 0;
 
+  static Topic Action(int agent) { return {TopicKind::kAction, agent}; }
   static Topic Answers(AgentRange agents) { return {TopicKind::kAnswers, agents.first, agents.last}; }
   static Topic Bundle(AgentRange agents) { return {TopicKind::kBundle, agents.first, agents.last}; }
   static Topic State(int agent) { return {TopicKind::kState, agent}; }

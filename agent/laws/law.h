@@ -32,6 +32,9 @@ class Law {
   /// point nearest to it, in W (m), in the order of physics.obstacles; inside an obstacle, the position itself. Called
   /// before each Want_W() if sensors.range_m is set; `nearest_W` is valid until Want_W() has returned.
   virtual void See(std::span<const Eigen::Vector3d> /*nearest_W*/) {}
+  /// What somebody outside wants of the agent from the next Want_W() on: LawParams::action numbers. Called for laws
+  /// that take actions, before Want_W() of a tick, whenever there is a new one.
+  virtual void Act(std::span<const double> /*action*/) {}
   /// Wanted acceleration (m/s^2) or velocity (m/s) of this agent, expressed in W. `t_s`: simulated time since the law
   /// began (LawConfig::since), increasing from call to call. `self`: the measured motion of this agent. `heard`: one
   /// entry for each neighbour whose sample has arrived, in increasing id. Components outside law.axes are ignored. An

@@ -14,7 +14,7 @@ using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     RendezvousLaw, EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw,
     CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, CoverageLaw,
-    AffineFormationLaw, ResilientLaw, FlockingLaw, AvoidanceLaw, PolicyLaw, CustomLaw, PluginLaw;
+    AffineFormationLaw, ResilientLaw, FlockingLaw, AvoidanceLaw, PolicyLaw, ActionsLaw, CustomLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
@@ -22,8 +22,8 @@ std::span<const LawEntry> Laws() {
       FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(), ContainmentLaw(),
       AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(),
       BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   CoverageLaw(),       AffineFormationLaw(),
-      ResilientLaw(),        FlockingLaw(),       AvoidanceLaw(),        PolicyLaw(),         CustomLaw(),
-      PluginLaw(),
+      ResilientLaw(),        FlockingLaw(),       AvoidanceLaw(),        PolicyLaw(),         ActionsLaw(),
+      CustomLaw(),           PluginLaw(),
   };
   return kLaws;
 }

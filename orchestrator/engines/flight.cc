@@ -19,13 +19,51 @@ Flight::Flight(const Experiment& experiment, Crew& crew, Tell tell)
       world_(experiment, World::LookForContacts::kWhenClose, World::kAllLanes, crew),
       team_(experiment, crew),
       actuation_(static_cast<std::size_t>(experiment.size())),
-      row_(experiment.size()) {}
+      actions_(static_cast<std::size_t>(experiment.size())),
+      row_(experiment.size()) {
+  HoldActions();
+}
 
-const DecodedRow& Flight::Exchange() {
-  const std::int64_t tick = world_.tick();
-  TakeEvents(tick);
+/// The states and events of the tick.
+void Flight::Begin() {
+  if (std::exchange(has_begun_, true)) return;
+  TakeEvents(world_.tick());
   for (const AgentConfig& agent : experiment_.agents)
     row_.motions[static_cast<std::size_t>(agent.id - 1)] = world_.State(agent.id);
+}
+
+const DecodedRow& Flight::Sense() {
+  Begin();
+  team_.Sense(world_.tick(), row_.motions);
+  return row_;
+}
+
+std::size_t Flight::NumbersOfAction(int id) const {
+  return (live_ ? live_->current() : experiment_).agent(id).law.params->action;
+}
+
+/// Gives laws that have begun anew the actions that hold: those before, or 0 for other laws than before.
+void Flight::HoldActions() {
+  for (const AgentConfig& agent : experiment_.agents) {
+    if (!agent.takes_actions) continue;
+    std::vector<double>& action = actions_[static_cast<std::size_t>(agent.id - 1)];
+    if (const std::size_t numbers = NumbersOfAction(agent.id); action.size() != numbers) action.assign(numbers, 0);
+    team_.Act(agent.id, action);
+  }
+}
+
+void Flight::Act(int id, std::span<const double> action) {
+  const std::size_t expected = NumbersOfAction(id);
+  if (action.size() != expected)
+    throw std::invalid_argument(
+        fmt::format("agent {}: expected an action of {} numbers, got {}", id, expected, action.size()));
+  team_.Act(id, action);
+  actions_[static_cast<std::size_t>(id - 1)].assign(action.begin(), action.end());
+}
+
+const DecodedRow& Flight::Exchange() {
+  Begin();
+  const std::int64_t tick = world_.tick();
   if (may_lose_) kept_ = row_.commands;
   team_.Decide(tick, row_.motions, row_.commands, SilentAt(tick), may_lose_ ? &failures_ : nullptr);
   LoseThoseThatFailed(tick);
@@ -33,12 +71,14 @@ const DecodedRow& Flight::Exchange() {
     const auto i = static_cast<std::size_t>(agent.id - 1);
     row_.has_answered[i] = team_.HasAnswered(agent.id);
     row_.messages[i].clear();
+    row_.actions[i].clear();
     if (!team_.HasAnswered(agent.id)) continue;
     row_.commands[i].v_law_W.setZero();  // as over DDS, where velocities are not sent
     row_.commands[i].v_limited_W.setZero();
     actuation_[i] = row_.commands[i].actuator;
     const std::span<const double> message = team_.message(agent.id);
     row_.messages[i].assign(message.begin(), message.end());
+    row_.actions[i] = actions_[i];
   }
   return row_;
 }
@@ -103,6 +143,7 @@ void Flight::TakeEvents(std::int64_t tick) {
     throw std::runtime_error(fmt::format("tick {}: {}", tick, loss));
   world_.Adopt(*Live().now());
   team_.Adopt(Live().now());
+  HoldActions();
 }
 
 void Flight::TakeEvent(const Event& event) {

@@ -31,12 +31,23 @@ class Flight {
   explicit Flight(
       const Experiment& experiment, Crew& crew = Crew::Alone(), Tell tell = [](const std::string&) {});
 
+  /// The states of the current tick, and its events; the agents measure and hear. Exchange() does it otherwise. Valid
+  /// until the next call. Throws as Exchange() does.
+  const DecodedRow& Sense();
+  /// Agent `id` as it is after Sense().
+  const Agent& agent(int id) const { return team_.agent(id); }
+  /// What agent `id` is to do (Law::Act), from the current tick on; after Sense(). Throws std::invalid_argument, with
+  /// the agent, if its law takes none, or not of this size. An action holds until the next one; at first it is 0.
+  void Act(int id, std::span<const double> action);
   /// The states of the current tick, and the commands and messages that answer them. Valid until the next call. Throws
   /// std::runtime_error if the run does not go on: a law fails, or an event loses an agent, and run.on_agent_loss is
   /// "abort".
   const DecodedRow& Exchange();
   /// Moves the bodies from the current tick to the next one, by the commands of the last Exchange().
-  void Step() { world_.Step(actuation_); }
+  void Step() {
+    world_.Step(actuation_);
+    has_begun_ = false;
+  }
   /// The current tick; 0 at first.
   std::int64_t tick() const { return world_.tick(); }
 
@@ -49,6 +60,9 @@ class Flight {
  private:
   LiveExperiment& Live();
   std::span<const int> SilentAt(std::int64_t tick);
+  void Begin();
+  std::size_t NumbersOfAction(int id) const;
+  void HoldActions();
   void LoseThoseThatFailed(std::int64_t tick);
   void Lose(int id, std::int64_t tick);
   void TakeEvents(std::int64_t tick);
@@ -66,8 +80,10 @@ class Flight {
   std::size_t next_event_ = 0;           // in experiment_.events
   std::vector<Event> by_hand_;
   std::optional<double> new_pace_;
+  bool has_begun_ = false;  // Begin() at this tick
   std::vector<int> silent_;
   std::vector<Actuation> actuation_;
+  std::vector<std::vector<double>> actions_;  // that hold, by id - 1
   DecodedRow row_;
 };
 

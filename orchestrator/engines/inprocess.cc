@@ -95,11 +95,19 @@ class Steering {
   TickGate gate_;
 };
 
+void ActBy(ActionSource& actions, const Experiment& experiment, Flight& flight) {
+  flight.Sense();
+  const std::span<const std::vector<double>> now = actions.At(flight.tick());
+  for (int id = 1; id <= experiment.size(); ++id)
+    if (const std::vector<double>& action = now[static_cast<std::size_t>(id - 1)]; !action.empty())
+      flight.Act(id, action);
+}
+
 }  // namespace
 
 EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
                           const std::function<bool()>& go_on, RunRequests* requests, Crew& crew,
-                          const std::function<void(const std::string& words)>& tell) {
+                          const std::function<void(const std::string& words)>& tell, ActionSource* actions) {
   EngineResult result;
   const auto launched = WallClock::now();
   auto start = launched;
@@ -111,6 +119,7 @@ EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSin
     RowFeed feed(experiment, sinks);
     start = WallClock::now();
     for (std::int64_t tick = 0; steering ? steering->Await(tick, go_on) : go_on(); ++tick) {
+      if (actions != nullptr) ActBy(*actions, experiment, *flight);
       feed.Add(tick, flight->Exchange());
       if (tick == experiment.ticks()) break;
       flight->Step();

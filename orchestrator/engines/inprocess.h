@@ -9,6 +9,7 @@
 #include "experiment/experiment.h"
 #include "orchestrator/control/run_requests.h"
 #include "orchestrator/engines/engine.h"
+#include "orchestrator/team/action_source.h"
 #include "orchestrator/team/row_sink.h"
 
 namespace mascot {
@@ -20,9 +21,12 @@ namespace mascot {
 ///
 /// An agent whose law fails is lost, with all agents of its process (AgentProcesses()), as over DDS, where the process
 /// ends: run.on_agent_loss says what follows. `tell` gets words for the user about it.
+///
+/// `actions`: what agents do whose laws take actions; null: they are given none.
 EngineResult RunInProcess(
     const Experiment& experiment, const std::vector<RowSink*>& sinks, const std::function<bool()>& go_on,
     RunRequests* requests = nullptr, Crew& crew = Crew::Alone(),
-    const std::function<void(const std::string& words)>& tell = [](const std::string&) {});
+    const std::function<void(const std::string& words)>& tell = [](const std::string&) {},
+    ActionSource* actions = nullptr);
 
 }  // namespace mascot

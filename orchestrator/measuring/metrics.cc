@@ -58,7 +58,7 @@ void Metrics::Adopt(std::shared_ptr<const Experiment> now) {
 void Metrics::Add(const DecodedRow& row) {
   MeasureControl(row);
   separation_.Add(row.motions, axes_);
-  MeasureFidelity(row.motions);
+  MeasureFidelity(row);
   MeasurePath(row.motions);
   ++rows_;
 }
@@ -90,12 +90,13 @@ void Metrics::StepIdeal() try {
   ideal_.reset();
 }
 
-void Metrics::MeasureFidelity(std::span<const Motion> motions) {
+void Metrics::MeasureFidelity(const DecodedRow& row) {
   if (ideal_ && rows_ > 0) StepIdeal();
   if (!ideal_) return;
   if (now_) ideal_->Adopt(std::exchange(now_, nullptr));  // after the step that leads to this row
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    const double deviation2 = (motions[i].p_WB - ideal_->p_W(static_cast<int>(i) + 1)).squaredNorm();
+  for (std::size_t i = 0; i < row.motions.size(); ++i) {
+    if (!row.actions[i].empty()) ideal_->Act(static_cast<int>(i) + 1, row.actions[i]);
+    const double deviation2 = (row.motions[i].p_WB - ideal_->p_W(static_cast<int>(i) + 1)).squaredNorm();
     squared_deviation_ += deviation2;
     max_deviation2_ = std::max(max_deviation2_, deviation2);
   }

@@ -56,7 +56,7 @@ class Metrics {
  private:
   void Take(const Experiment& experiment);
   void MeasureControl(const DecodedRow& row);
-  void MeasureFidelity(std::span<const Motion> motions);
+  void MeasureFidelity(const DecodedRow& row);
   void StepIdeal();
   void MeasurePath(std::span<const Motion> motions);
 

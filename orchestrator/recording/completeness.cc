@@ -46,13 +46,25 @@ std::vector<bool> SendersOf(Section& config, const McapContents& contents, std::
   return senders;
 }
 
-/// The recorded topics (record.topics, record.ros_types): each agent's command, message, odometry and state, then the
-/// clock, the events, the scene and the transforms.
+/// Which agents have a law that takes actions, by id - 1: those whose actions have a channel.
+std::vector<bool> TakersIn(const McapContents& contents, std::size_t agents) {
+  std::vector<bool> takers(agents);
+  for (const auto& [id, channel] : contents.channels) {
+    const auto topic = Topic::Parse(channel.topic);
+    if (topic && topic->kind == TopicKind::kAction && static_cast<std::size_t>(topic->agent) <= agents)
+      takers[static_cast<std::size_t>(topic->agent - 1)] = true;
+  }
+  return takers;
+}
+
+/// The recorded topics (record.topics, record.ros_types): each agent's action, command, message, odometry and state,
+/// then the clock, the events, the scene and the transforms.
 std::vector<Topic> TopicsOf(const std::vector<std::string>& patterns, bool ros_types,
-                            const std::vector<bool>& sends_messages) {
+                            const std::vector<bool>& takes_actions, const std::vector<bool>& sends_messages) {
   std::vector<Topic> topics;
   for (std::size_t i = 0; i < sends_messages.size(); ++i) {
     const int id = static_cast<int>(i) + 1;
+    if (takes_actions[i]) topics.push_back(Topic::Action(id));
     topics.push_back(Topic::Command(id));
     if (sends_messages[i]) topics.push_back(Topic::Message(id));
     if (ros_types) topics.push_back(Topic::Odom(id));
@@ -313,7 +325,8 @@ RecordingPlan PlanOf(const McapContents& contents, const std::string& path) {
   config.ThrowIfWrong();  // before `agents` is used as a size, and rates to divide by
   plan.ticks_per_row = rows_hz == 0 ? 1 : std::max(plan.rate_hz / rows_hz, 1);
   plan.lost = LostIn(config);
-  plan.topics = TopicsOf(patterns, plan.ros_types, SendersOf(config, contents, static_cast<std::size_t>(plan.agents)));
+  const auto agents = static_cast<std::size_t>(plan.agents);
+  plan.topics = TopicsOf(patterns, plan.ros_types, TakersIn(contents, agents), SendersOf(config, contents, agents));
   config.ThrowIfWrong();
   return plan;
 }

@@ -58,7 +58,7 @@ const IndexedRows::Samples& IndexedRows::Load(std::size_t chunk) {
 void IndexedRows::Collect(std::int64_t tick, Row& row) {
   row.tick = tick;
   row.events.clear();
-  for (auto* samples : {&row.states, &row.commands, &row.messages})
+  for (auto* samples : {&row.states, &row.commands, &row.messages, &row.actions})
     for (Row::Bytes& sample : *samples) sample.clear();
   const std::uint64_t time_ns = StampNs(tick, rows_.plan.rate_hz);
   const auto& chunks = index_->chunks();

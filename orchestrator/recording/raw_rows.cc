@@ -15,7 +15,7 @@ RawRows::RawRows(const std::string& path, int agents, int rate_hz)
 void RawRows::Clear() {
   row_.clock.clear();
   row_.events.clear();
-  for (auto* samples : {&row_.states, &row_.commands, &row_.messages})
+  for (auto* samples : {&row_.states, &row_.commands, &row_.messages, &row_.actions})
     for (Row::Bytes& sample : *samples) sample.clear();
 }
 

@@ -34,6 +34,11 @@ RecordedLife::RecordedLife(const std::string& file, const McapContents& contents
         {fmt::format("{}: expected a recording of every tick, which the agent answers, got one of every "
                      "{} ticks (record.rate_hz)",
                      file, plan.ticks_per_row)});
+  if (experiment.agent(agent).takes_actions)
+    throw ConfigError(
+        {fmt::format("{}: expected an agent whose law decides by itself, got agent {}, which takes "
+                     "actions: verify flies its run again",
+                     file, agent)});
   for (const int id : sources_)
     Require(Topic::State(id), id == agent ? "which is its own" : fmt::format("which agent {} hears", agent));
   for (const int id : sources_)

@@ -18,6 +18,7 @@ auto& SampleIn(AnyRow& row, const Topic& topic) {
   return topic.kind == TopicKind::kState     ? row.states[agent]
          : topic.kind == TopicKind::kCommand ? row.commands[agent]
          : topic.kind == TopicKind::kMessage ? row.messages[agent]
+         : topic.kind == TopicKind::kAction  ? row.actions[agent]
                                              : row.clock;
 }
 
@@ -37,12 +38,12 @@ const std::uint8_t* BodyOf(const Row& row, const Topic& topic, std::size_t body)
   return bytes.data() + kEncapsulation.size();
 }
 
-/// Likewise, of a message.
-const std::uint8_t* BodyOfMessage(const Row& row, const Topic& topic) {
+/// Likewise, of a message or an action, which has at most `most` numbers.
+const std::uint8_t* BodyOfNumbers(const Row& row, const Topic& topic, std::size_t most) {
   const Row::Bytes& bytes = SampleIn(row, topic);
   const bool has_head = bytes.size() >= kEncapsulation.size() + MessageBody(0);
   const std::size_t numbers = has_head ? HeadOf(bytes.data() + kEncapsulation.size()).more : 0;
-  return BodyOf(row, topic, MessageBody(std::min(numbers, kMaxNumbers + 1)));
+  return BodyOf(row, topic, MessageBody(std::min(numbers, most + 1)));
 }
 
 void DecodeEvents(const Row& row, DecodedRow& decoded) try {
@@ -70,10 +71,17 @@ void Decode(const Row& row, DecodedRow& decoded) {
     GetState(state, decoded.motions[i]);
     decoded.events_so_far = static_cast<int>(HeadOf(state).more);
     decoded.messages[i].clear();
-    if (!row.messages[i].empty()) GetMessage(BodyOfMessage(row, Topic::Message(id)), decoded.messages[i]);
+    if (!row.messages[i].empty()) GetMessage(BodyOfNumbers(row, Topic::Message(id), kMaxNumbers), decoded.messages[i]);
+    DecodeAction(row, id, decoded.actions[i]);
     decoded.has_answered[i] = !row.commands[i].empty();
     if (decoded.has_answered[i] != 0) GetCommand(BodyOf(row, Topic::Command(id), kCommandBody), decoded.commands[i]);
   }
+}
+
+void DecodeAction(const Row& row, int id, std::vector<double>& action) {
+  action.clear();
+  if (row.actions[static_cast<std::size_t>(id - 1)].empty()) return;
+  GetMessage(BodyOfNumbers(row, Topic::Action(id), kMaxActionNumbers), action);
 }
 
 const Row& RowEncoder::Encode(std::int64_t tick, const DecodedRow& decoded) {
@@ -91,7 +99,12 @@ const Row& RowEncoder::Encode(std::int64_t tick, const DecodedRow& decoded) {
     PutState(tick, rate, id, decoded.events_so_far, decoded.motions[i], BodyIn(row_.states[i], kStateBody));
     row_.commands[i].clear();
     row_.messages[i].clear();
+    row_.actions[i].clear();
     if (decoded.has_answered[i] == 0) continue;
+    if (experiment_.agents[i].takes_actions) {
+      const std::vector<double>& action = decoded.actions[i];
+      PutMessage(tick, rate, id, action, BodyIn(row_.actions[i], MessageBody(action.size())));
+    }
     PutCommand(tick, rate, id, decoded.commands[i], BodyIn(row_.commands[i], kCommandBody));
     if (!experiment_.agents[i].sends_messages) continue;
     const std::vector<double>& message = decoded.messages[i];

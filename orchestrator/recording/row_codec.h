@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "bus/wire.h"
 #include "experiment/experiment.h"
@@ -15,6 +16,9 @@ const Row::Bytes& SampleOf(const Row& row, const Topic& topic);
 /// Decodes `row` into `decoded`, which holds the previous row: a command that is missing in `row` keeps its value.
 /// Throws std::runtime_error, with tick and topic, for bytes that are not a sample of the expected type.
 void Decode(const Row& row, DecodedRow& decoded);
+
+/// Decodes the action of agent `id` in `row`; empty: there is none. Throws as Decode() does.
+void DecodeAction(const Row& row, int id, std::vector<double>& action);
 
 /// Encodes the rows of a run in one process as the bytes that separate processes would have sent.
 class RowEncoder {

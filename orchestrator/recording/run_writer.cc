@@ -19,6 +19,7 @@ RunWriter::RunWriter(const Experiment& experiment, const RunFolder& folder, cons
   about[kFormatKey] = std::to_string(kFormat);
   mcap_.Metadata(kMetadata, about);
   for (int id = 1; id <= experiment.size(); ++id) {
+    actions_.push_back(experiment.agent(id).takes_actions ? AddChannel(Topic::Action(id)) : std::nullopt);
     commands_.push_back(AddChannel(Topic::Command(id)));
     messages_.push_back(experiment.agent(id).sends_messages ? AddChannel(Topic::Message(id)) : std::nullopt);
     states_.push_back(AddChannel(Topic::State(id)));
@@ -76,6 +77,7 @@ void RunWriter::WriteRow(const FlownRow& row) {
   const std::uint64_t time_ns = StampNs(row.tick(), experiment_.control.rate_hz);
   if (ros_) ros_->rows.SetRow(row);
   for (std::size_t i = 0; i < bytes.states.size(); ++i) {
+    WriteSample(actions_[i], time_ns, bytes.actions[i]);
     WriteSample(commands_[i], time_ns, bytes.commands[i]);
     WriteSample(messages_[i], time_ns, bytes.messages[i]);
     if (ros_) WriteRos(ros_->odometry[i], Topic::Odom(static_cast<int>(i) + 1), time_ns);

@@ -51,7 +51,7 @@ class RunWriter final : public RowSink {
   const Experiment& experiment_;
   McapWriter mcap_;
   std::optional<StatesNpz> npz_;
-  std::vector<std::optional<std::uint16_t>> commands_, messages_, states_;  // channels by id - 1
+  std::vector<std::optional<std::uint16_t>> actions_, commands_, messages_, states_;  // channels by id - 1
   std::optional<std::uint16_t> clock_, event_;
   /// The channels of record.ros_types.
   struct Ros {

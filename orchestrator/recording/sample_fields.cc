@@ -75,6 +75,12 @@ void AddFields(const mascot_msgs::msg::AgentMessage& message, FieldList& list) {
   list.AddAll("data", message.data());
 }
 
+void AddFields(const mascot_msgs::msg::AgentAction& action, FieldList& list) {
+  list.AddHead(action);
+  list.Add("data.size()", action.data().size());
+  list.AddAll("data", action.data());
+}
+
 void AddFields(const rosgraph_msgs::msg::Clock& clock, FieldList& list) { list.Add("clock", clock.clock()); }
 
 void AddFields(const mascot_msgs::msg::Event& event, FieldList& list) {
@@ -119,6 +125,8 @@ FieldList FieldsOf(TopicKind kind, SampleBytes bytes) {
       return FieldsAs<mascot_msgs::msg::AgentCommand>(bytes);
     case TopicKind::kMessage:
       return FieldsAs<mascot_msgs::msg::AgentMessage>(bytes);
+    case TopicKind::kAction:
+      return FieldsAs<mascot_msgs::msg::AgentAction>(bytes);
     case TopicKind::kEvent:
       return FieldsAs<mascot_msgs::msg::Event>(bytes);
     case TopicKind::kOdom:

@@ -55,6 +55,7 @@ Experiment Sweep::Load(const SweepPoint& point) const {
   Experiment experiment = LoadExperiment(text, name, laws.Fit(point.overrides));
   if (experiment.run.mode == Mode::kRealtime)
     throw ConfigError({"sweep: expected run.mode = \"lockstep\", got \"realtime\""});
+  RefuseActions(experiment);
   return experiment;
 }
 

@@ -26,6 +26,8 @@ class IdealTeam {
   std::span<const Command> commands() const { return commands_; }
   /// Call it when events have changed the experiment: from the current tick on, the experiment is `now`.
   void Adopt(const std::shared_ptr<const Experiment>& now) { team_.Adopt(now); }
+  /// As Team::Act().
+  void Act(int id, std::span<const double> action) { team_.Act(id, action); }
   /// Goes on to the next tick. Throws what a law throws, unless run.on_agent_loss lets the run go on.
   void Step();
 

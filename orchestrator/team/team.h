@@ -33,6 +33,8 @@ class Team {
   /// Lets all agents measure and hear at this tick, before Decide() or Want(), which do it otherwise. Agents that are
   /// lost do not.
   void Sense(std::int64_t tick, std::span<const Motion> motions);
+  /// What somebody outside wants of agent `id` (Law::Act), from the next Decide() or Want() on.
+  void Act(int id, std::span<const double> action) { agents_[static_cast<std::size_t>(id - 1)]->Act(action); }
   /// As it is after the last Sense(), or the last tick.
   const Agent& agent(int id) const { return *agents_[static_cast<std::size_t>(id - 1)]; }
   /// The complete commands of all agents, by id - 1. `motions`: their states at this tick. Messages that are sent

@@ -28,10 +28,13 @@ void EngineArgs::AddTo(CLI::App& command, const std::string& help) {
       "with --engine inprocess: how many threads fly a large team (default: one per core that the recording leaves)");
 }
 
-void EngineArgs::Refuse(const Experiment& experiment) const {
+void EngineArgs::Refuse(const Experiment& experiment, bool gives_actions) const {
+  if (!gives_actions) RefuseActions(experiment);
   if (threads && name != kInProcess) throw ConfigError({"--threads: expected --engine inprocess with it"});
   if (threads && (*threads < 1 || *threads > kMaxThreads))
     throw ConfigError({fmt::format("--threads: expected 1 to {}, got {}", kMaxThreads, *threads)});
+  if (name == kOverDds && gives_actions && TakesActions(experiment))
+    throw ConfigError({"--engine dds: expected laws that take no actions, which are given in one process alone"});
   if (name == kOverDds) return RefuseTooManyProcesses(experiment);
   if (experiment.run.mode == Mode::kRealtime)  // in one process there is no pacing
     throw ConfigError({"--engine inprocess: expected run.mode = \"lockstep\", got \"realtime\""});
@@ -48,8 +51,14 @@ Crew EngineArgs::MakeCrew(const Experiment& experiment, int others) const {
 
 EngineRun::EngineRun(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
                      const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop,
-                     Crew& crew, RosSource* ros)
-    : experiment_(experiment), sinks_(sinks), requests_(requests), console_(console), stop_(stop), crew_(crew) {
+                     Crew& crew, RosSource* ros, ActionSource* actions)
+    : experiment_(experiment),
+      sinks_(sinks),
+      requests_(requests),
+      console_(console),
+      stop_(stop),
+      crew_(crew),
+      actions_(actions) {
   if (engine == kOverDds)
     dds_.emplace(experiment, folder, sinks, requests, console, stop, ros);
   else if (FliesCodeOfUsers(experiment))
@@ -69,7 +78,7 @@ EngineResult EngineRun::Fly() {
   });
   EngineResult result = RunInProcess(
       experiment_, sinks_, [&] { return interruptions.signal() == 0; }, requests_, crew_,
-      [&](const std::string& words) { console_.Line(words); });
+      [&](const std::string& words) { console_.Line(words); }, actions_);
   result.signal = interruptions.signal();
   return result;
 }

@@ -20,6 +20,7 @@ class App;
 
 namespace mascot {
 
+class ActionSource;
 class RosSource;
 class RowSink;
 
@@ -34,8 +35,8 @@ struct EngineArgs {
 
   /// Declares both; `help` is that of --engine. `*this` must outlive the parsing.
   void AddTo(CLI::App& command, const std::string& help);
-  /// Throws ConfigError if this engine cannot fly the experiment, or not so.
-  void Refuse(const Experiment& experiment) const;
+  /// Throws ConfigError if this engine cannot fly the experiment, or not so. `gives_actions`: there is an ActionSource.
+  void Refuse(const Experiment& experiment, bool gives_actions = false) const;
   /// The threads that are to fly the run, with the one that calls: exactly as many as were asked for, or at most as
   /// many as there are cores but for `others` threads that work beside them; no more than a team of this size keeps
   /// busy. Over DDS, only the one that calls. Throws what Crew throws.
@@ -46,11 +47,12 @@ struct EngineArgs {
 class EngineRun {
  public:
   /// Every sink gets every row, in tick order. `requests`: what people ask of the run, also one of the sinks; null:
-  /// they cannot ask anything. `crew`: computes a run in this process. `ros`, if given, is published for RViz2. All
-  /// arguments must outlive this object.
+  /// they cannot ask anything. `crew`: computes a run in this process. `ros`, if given, is published for RViz2.
+  /// `actions`: what agents do whose laws take actions; null: there are no such agents. All arguments must outlive this
+  /// object.
   EngineRun(const std::string& engine, const Experiment& experiment, const RunFolder& folder,
             const std::vector<RowSink*>& sinks, RunRequests* requests, Console& console, StopSignal& stop, Crew& crew,
-            RosSource* ros = nullptr);
+            RosSource* ros = nullptr, ActionSource* actions = nullptr);
 
   /// Sets the contents that the file `path` gets if this process is killed during a run over DDS, or during one with
   /// laws of users in this process. Call it before Fly().
@@ -70,6 +72,7 @@ class EngineRun {
   Console& console_;
   StopSignal& stop_;
   Crew& crew_;
+  ActionSource* const actions_;
   std::optional<DdsEngine> dds_;    // absent: in this process
   std::optional<Janitor> janitor_;  // in this process, with laws of users
   bool hangs_ = false;

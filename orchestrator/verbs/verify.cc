@@ -16,6 +16,7 @@
 #include "orchestrator/recording/attached_experiment.h"
 #include "orchestrator/recording/compare.h"
 #include "orchestrator/recording/fingerprint.h"
+#include "orchestrator/recording/recorded_actions.h"
 #include "orchestrator/recording/recorded_experiment.h"
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/verbs/fly.h"
@@ -133,7 +134,9 @@ int Verify(const VerifyArgs& args) {
               << "`orchestrator verify " << subject.file << "` checks the recording alone" << std::endl;
     return kExitFailed;
   }
-  args.engine.Refuse(experiment);
+  args.engine.Refuse(experiment, /*gives_actions=*/true);
+  std::optional<RecordedActions> actions;
+  if (TakesActions(experiment)) actions.emplace(subject.file, subject.plan, experiment);
   for (const std::string& note : ChangesSince(subject.contents, experiment, "flown again"))
     std::cout << "note: " << note << "\n";
   before_the_run.reset();
@@ -146,7 +149,8 @@ int Verify(const VerifyArgs& args) {
   if (comparison.edges() != nullptr) sinks.push_back(&edges.emplace(experiment, *comparison.edges()));
   sinks.push_back(&comparison);
   Crew crew = args.engine.MakeCrew(experiment, /*others=*/0);
-  EngineRun flight(args.engine.name, experiment, folder, sinks, nullptr, console, stop, crew);
+  EngineRun flight(args.engine.name, experiment, folder, sinks, nullptr, console, stop, crew,
+                   /*ros=*/nullptr, actions ? &*actions : nullptr);
   const EngineResult result = flight.Fly();
   if (result.failure.empty() && result.signal == 0) comparison.Finish();
   const int code = Report(subject, comparison, result);

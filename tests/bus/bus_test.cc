@@ -91,6 +91,7 @@ TEST(Wire, TypesHaveTheNamesThatRos2GivesThem) {
 }
 
 TEST(Wire, TypesHaveTheNamesOfTheirGeneratedCode) {
+  EXPECT_EQ(WireTypeName(TopicKind::kAction), ActionType().getName());
   EXPECT_EQ(WireTypeName(TopicKind::kAnswers), AnswersType().getName());
   EXPECT_EQ(WireTypeName(TopicKind::kBundle), BundleType().getName());
   EXPECT_EQ(WireTypeName(TopicKind::kRow), RowType().getName());

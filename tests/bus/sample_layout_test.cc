@@ -131,6 +131,20 @@ TEST(SampleLayout, OfMessagesAndTheClockIsThatOfFastCdr) {
   }
 }
 
+TEST(SampleLayout, OfActionsIsThatOfMessages) {
+  Numbers numbers;
+  for (std::size_t size = 0; size <= kMaxActionNumbers; ++size) {
+    std::vector<double> action(size);
+    std::ranges::generate(action, [&] { return numbers.Next(); });
+    mascot_msgs::msg::AgentAction sample;
+    sample.stamp().sec(2);
+    sample.tick(60);
+    sample.agent(5);
+    sample.data().assign(action.begin(), action.end());
+    EXPECT_EQ(Sample(MessageBody(size), [&](auto* body) { PutMessage(60, 30, 5, action, body); }), ByFastCdr(sample));
+  }
+}
+
 // --- samples that carry samples -------------------------------------------------------------------------
 
 /// Adds bodies of states, commands or messages of these agents, and the same samples for Fast CDR.

@@ -20,6 +20,7 @@ using SampleBytes = std::span<const std::uint8_t>;
 void Use(const mascot_msgs::msg::AgentState& state) { FromWire(state); }
 void Use(const mascot_msgs::msg::AgentCommand& command) { FromWire(command); }
 void Use(const mascot_msgs::msg::AgentMessage& message) { Require(message.data().size() <= 64, "too long a message"); }
+void Use(const mascot_msgs::msg::AgentAction& action) { Require(action.data().size() <= 67, "too long an action"); }
 void Use(const rosgraph_msgs::msg::Clock& /*clock*/) {}
 
 /// A sample of a type that recordings have, by our own functions: once decoded, encoding and decoding it again changes
@@ -85,6 +86,7 @@ constexpr void (*kFuzz[])(SampleBytes bytes) = {
     FuzzBundle,
     FuzzUnrecorded<RequestType>,
     FuzzUnrecorded<ExperimentType>,
+    FuzzRecorded<mascot_msgs::msg::AgentAction>,
 };
 
 }  // namespace

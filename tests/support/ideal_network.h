@@ -15,7 +15,7 @@ namespace mascot {
 /// The agents of an experiment as ideal double integrators whose acceleration is held for one tick:
 ///   p+ = p + h v + h^2 u / 2,  v+ = v + h u
 /// or, where their law wants a velocity, as single integrators: p+ = p + h u.
-/// Tests the law alone: no limits, bodies or delays.
+/// Tests the law alone: no limits, bodies or delays. A law that takes actions is given 1 for each of its numbers.
 class IdealNetwork {
  public:
   explicit IdealNetwork(const std::string& toml)
@@ -23,6 +23,7 @@ class IdealNetwork {
   explicit IdealNetwork(Experiment flown) : experiment(std::move(flown)) {
     for (const AgentConfig& agent : experiment.agents) {
       laws.push_back(MakeLaw(experiment, agent.id));
+      laws.back()->Act(std::vector<double>(agent.law.params->action, 1.0));
       ranges.emplace_back(experiment.sensors.range_m, experiment.physics.obstacles);
       motions.emplace_back();
       motions.back().p_WB = agent.p_W;

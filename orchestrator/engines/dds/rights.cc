@@ -72,6 +72,8 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
       return !reads && bundled && topic.agents() == agents;
     case TopicKind::kBundle:
       return reads && bundled && topic.agents() == agents;
+    case TopicKind::kAction:
+      return reads && own && experiment.agent(topic.agent).takes_actions;
     case TopicKind::kState:
       return reads && !bundled && (own || MayHear(experiment, agents, topic.agent));
     case TopicKind::kCommand:

@@ -40,6 +40,7 @@ Foxglove::Connections ConnectionsOf(const Experiment& experiment) {
   for (const AgentConfig& agent : experiment.agents) {
     const std::string name = "/" + AgentName(agent.id);
     std::vector<std::string>& others = hearers[static_cast<std::size_t>(agent.id - 1)];
+    if (agent.takes_actions) add(Topic::Action(agent.id), recorder, {name});
     add(Topic::Command(agent.id), name, {server});
     if (agent.sends_messages) add(Topic::Message(agent.id), name, others);
     others.push_back(name);

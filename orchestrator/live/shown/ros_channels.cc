@@ -61,6 +61,7 @@ RosChannels::RosChannels(const Experiment& experiment)
     if (IsRecorded(experiment.record.topics, topic)) topics_.push_back(topic);
   };
   for (const AgentConfig& agent : experiment.agents) {
+    if (agent.takes_actions) add(Topic::Action(agent.id));
     add(Topic::Command(agent.id));
     if (agent.sends_messages) add(Topic::Message(agent.id));
     add(Topic::State(agent.id));

@@ -152,9 +152,10 @@ TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
       EXPECT_GT(difference, 1e-4) << law.name << " " << setting.parameter;
       tried.push_back(setting.parameter);
     }
-    // These are tested in custom_law_test.cc, custom_text_test.cc, policy_test.cc and plugin_law_test.cc: files,
-    // messages, places of errors.
-    const std::vector<std::string_view> elsewhere = {"file", "messages", "onnx_file", "python_file", "python_line"};
+    // These are tested in actions_test.cc, custom_law_test.cc, custom_text_test.cc, policy_test.cc and
+    // plugin_law_test.cc: files, messages, places of errors.
+    const std::vector<std::string_view> elsewhere = {"file",      "message",     "messages",
+                                                     "onnx_file", "python_file", "python_line"};
     std::vector<std::string> named;
     for (const Key& parameter : law.parameters)
       if (std::ranges::find(elsewhere, parameter.name) == elsewhere.end()) named.emplace_back(parameter.name);

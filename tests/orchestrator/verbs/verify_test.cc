@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <bit>
+#include <filesystem>
 #include <map>
 
 #include "bus/wire.h"
@@ -14,6 +15,7 @@
 #include "orchestrator/recording/sample_fields.h"
 #include "tests/support/call.h"
 #include "tests/support/edited_recording.h"
+#include "tests/support/recorded_with_actions.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -61,6 +63,28 @@ void CopyWithConfig(const std::string& recording, const std::string& copy, const
   McapContents contents = ReadMcap(recording);
   Change(contents.attachments.at("config.toml"), from, to);
   CopyRecording(recording, contents, copy, Keep);
+}
+
+TEST_F(Verify, FliesAgainWhatAProgramToldTheAgentsToDo) {
+  const std::string toml =
+      "[run]\nduration_s = 0.5\n[agents]\ncount = 2\nmodel = 'double_integrator'\n[law]\nname = 'actions'\n";
+  const std::string recording = RecordedWithActions(toml, File("told"));
+  EXPECT_THAT(Check(recording).out, HasSubstr("the same, bit for bit: 51 ticks, 357 messages\n"));
+  const Said over_dds = Call(SetUpVerify, {recording, "--engine", "dds"});
+  EXPECT_EQ(over_dds.exit_code, 2);
+  EXPECT_THAT(over_dds.err,
+              HasSubstr("--engine dds: expected laws that take no actions, which are given in one process "
+                        "alone"));
+  const Said life = Call(SetUpReplay, {recording, "--to", "1"});
+  EXPECT_EQ(life.exit_code, 2);
+  EXPECT_THAT(life.err,
+              HasSubstr(recording + ": expected an agent whose law decides by itself, got agent 1, which takes "
+                                    "actions: verify flies its run again"));
+  WriteFile(File("told.toml"), toml);
+  const Said up = Call(SetUpUp, {File("told.toml"), "--out", File("up")});
+  EXPECT_EQ(up.exit_code, 2);
+  EXPECT_THAT(up.err, HasSubstr("law.name: expected laws that decide by themselves, got one of agent 1"));
+  EXPECT_FALSE(std::filesystem::exists(File("up")));
 }
 
 TEST_F(Verify, ARunRepeatsBitForBit) {
