@@ -19,19 +19,15 @@
 #include "orchestrator/control/run_socket.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/progress.h"
-#include "orchestrator/engines/scene_edges.h"
 #include "orchestrator/live/server/address.h"
 #include "orchestrator/live/shown/ros_view.h"
 #include "orchestrator/live/shown/view_sink.h"
-#include "orchestrator/measuring/law_curve.h"
 #include "orchestrator/measuring/run_meter.h"
-#include "orchestrator/recording/attached_experiment.h"
-#include "orchestrator/recording/background_sink.h"
 #include "orchestrator/recording/run_folder.h"
-#include "orchestrator/recording/run_writer.h"
 #include "orchestrator/report/assertion.h"
 #include "orchestrator/report/ending.h"
 #include "orchestrator/report/incident_report.h"
+#include "orchestrator/report/run_files.h"
 #include "orchestrator/report/summary.h"
 #include "orchestrator/theory/theory.h"
 #include "orchestrator/verbs/config_args.h"
@@ -176,25 +172,21 @@ int Up(UpArgs& args) {
 
   const RunFolder folder(args.out, experiment, args.force);
   viewers.LogTo(folder);
-  folder.Write("config.toml", experiment.resolved);
+  RunFiles files(experiment, folder, meter);
   console.Line(FirstLine(experiment, args.engine.name, folder));
   SayPythonNote(console);
   for (const std::string& warning : prediction.warnings) console.Line("warning: " + warning);
   if (args.engine.name == kOverDds)
     for (const std::string& warning : DeliveryWarnings(experiment)) console.Line("warning: " + warning);
-  RunWriter writer(experiment, folder, WithoutEvents(experiment));
-  BackgroundSink writes(experiment, writer);
   ExplainCrashes();
   const std::string summary_file = std::filesystem::absolute(folder.File("summary.json")).string();
   std::optional<LastWords> last_words(
       std::in_place, summary_file,
       SummaryIfKilled(experiment, args.engine.name, LastWords::kExitCode, LastWords::kReason));
   Progress progress(experiment, meter, console);
-  LawCurveRecord curve(experiment, meter);
   std::vector<RowSink*> sinks;
-  std::optional<SceneEdges> edges;
-  if (writer.edges() != nullptr) sinks.push_back(&edges.emplace(experiment, *writer.edges()));
-  sinks.insert(sinks.end(), {&writes, &meter, &curve, &progress, &requests});
+  files.AddTo(sinks);
+  sinks.insert(sinks.end(), {&progress, &requests});
   viewers.AddTo(sinks);
   std::optional<RosView> ros_view;
   std::optional<ViewSink> ros_sink;
@@ -213,16 +205,8 @@ int Up(UpArgs& args) {
   EngineResult result = flight.Fly();
   console.EndProgress();
   try {
-    const Experiment flown = WithEvents(experiment, requests.by_hand());
-    if (!requests.by_hand().empty()) {
-      folder.Write("config.toml", flown.resolved);
-      prediction = Predict(flown);
-    }
-    writes.Finish();
-    const std::int64_t ticks = writer.ticks() - 1;  // row 0 is the start
-    if (ExitCode(result) != 1 && ticks > 0 && ticks < experiment.ticks())
-      folder.Write("config.toml", StoppedAfter(flown, ticks));
-    writer.Close(WithoutDelivery(flown));
+    const Experiment flown = files.Complete(requests.by_hand(), ExitCode(result) != 1);
+    if (!requests.by_hand().empty()) prediction = Predict(flown);
   } catch (const std::exception& failure) {
     if (result.failure.empty()) result.failure = InWords(failure);
   }
@@ -233,8 +217,8 @@ int Up(UpArgs& args) {
                        .meter = meter,
                        .engine = result,
                        .engine_name = args.engine.name,
-                       .topics = writer.topics(),
-                       .samples = writer.samples()};
+                       .topics = files.topics(),
+                       .samples = files.samples()};
   if (!claims.empty() && ExitCode(result) == 0) result.failure = FailedClaims(claims, RunFigures(flown).all());
   // Laws that have flown the whole run in this process, perhaps on ideal bodies alone.
   if (ExitCode(result) == 0 && (args.engine.name == kInProcess || experiment.output.fidelity))
@@ -256,12 +240,11 @@ int Up(UpArgs& args) {
   };
   const auto draw = [&] {
     flight.End();  // after the first summary: the DDS library may not let us end in order
-    folder.Write("events.csv", IncidentsCsv(experiment, incidents));
-    if (curve.has_values()) folder.Write("law_curve.csv", curve.Csv());
-    return MakeOutput(experiment, folder, writer.rows() > 1, stop);
+    files.WriteTables(incidents);
+    return MakeOutput(experiment, folder, files.has_moved(), stop);
   };
   const int code = EndRun(folder, ExitCode(result), {.summary = summary, .draw = draw, .print = print});
-  if (code < 128 && writer.samples() > 0 && viewers.Stay()) viewers.ShowRecording(folder, stop);
+  if (code < 128 && files.samples() > 0 && viewers.Stay()) viewers.ShowRecording(folder, stop);
   flight.LeaveIfItHangs(code);
   return code;
 }
