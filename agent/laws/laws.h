@@ -86,6 +86,7 @@ struct LawEntry {
   std::span<const LawFigure> figures = {};  ///< what it measures beyond the figures that all laws share
   std::optional<LawCurve> curve = {};       ///< absent: disagreement tells most
   Axes axes = Axes::kXy;                    ///< default of law.axes
+  bool is_driven = false;                   ///< somebody outside decides, and gives its agents actions
   bool agrees = false;                      ///< agents agree by what they hear, which needs a spanning tree
   bool gathers = false;                     ///< agents meet in one place, where only their heights keep them apart
   bool is_of_user = false;                  ///< it runs code that a user of this program has written

@@ -9,6 +9,10 @@
 
 namespace mascot {
 
+/// The names of the engines, for --engine and summary.json.
+inline constexpr const char* kOverDds = "dds";
+inline constexpr const char* kInProcess = "inprocess";
+
 /// Result of a run; the same for both engines.
 struct EngineResult {
   std::string failure;               ///< why the run failed; empty: it ran to its end, or was stopped in order

@@ -27,9 +27,9 @@ Flight::Flight(const Experiment& experiment, Crew& crew, Tell tell)
 /// The states and events of the tick.
 void Flight::Begin() {
   if (std::exchange(has_begun_, true)) return;
-  TakeEvents(world_.tick());
   for (const AgentConfig& agent : experiment_.agents)
     row_.motions[static_cast<std::size_t>(agent.id - 1)] = world_.State(agent.id);
+  TakeEvents(world_.tick());
 }
 
 const DecodedRow& Flight::Sense() {
@@ -39,7 +39,7 @@ const DecodedRow& Flight::Sense() {
 }
 
 std::size_t Flight::NumbersOfAction(int id) const {
-  return (live_ ? live_->current() : experiment_).agent(id).law.params->action;
+  return now().agent(id).law.params->action;
 }
 
 /// Gives laws that have begun anew the actions that hold: those before, or 0 for other laws than before.
@@ -84,8 +84,16 @@ const DecodedRow& Flight::Exchange() {
 }
 
 void Flight::Take(Event event) {
-  event.tick = world_.tick();
+  event.tick = NextEventTick();
   by_hand_.push_back(std::move(event));
+}
+
+LiveExperiment Flight::Ahead() {
+  LiveExperiment ahead = Live();
+  for (std::size_t k = next_event_; k < experiment_.events.size() && experiment_.events[k].tick <= NextEventTick(); ++k)
+    ahead.Take(experiment_.events[k]);
+  for (const Event& event : by_hand_) ahead.Take(event);
+  return ahead;
 }
 
 /// The experiment as events change it. It is read at the first event: most runs have none, and to read a file is
@@ -140,7 +148,7 @@ void Flight::TakeEvents(std::int64_t tick) {
     for (const Event& event : live_->RestartsAt(tick)) TakeEvent(event);
   if (row_.events.empty()) return;
   if (const std::string loss = LossThatEndsTheRun(Live().current()); !loss.empty())
-    throw std::runtime_error(fmt::format("tick {}: {}", tick, loss));
+    throw LossEndsRun(fmt::format("tick {}: {}", tick, loss));
   world_.Adopt(*Live().now());
   team_.Adopt(Live().now());
   HoldActions();

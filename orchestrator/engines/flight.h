@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,12 @@
 #include "physics_server/world.h"
 
 namespace mascot {
+
+/// An agent is lost, and run.on_agent_loss ends the run.
+class LossEndsRun : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// A run in this process that somebody steps, tick by tick, without DDS: the same World and Agent classes as in the
 /// processes of the other engine, and the events of the file. The buffers are reused, so that ticks do not allocate.
@@ -32,7 +39,7 @@ class Flight {
       const Experiment& experiment, Crew& crew = Crew::Alone(), Tell tell = [](const std::string&) {});
 
   /// The states of the current tick, and its events; the agents measure and hear. Exchange() does it otherwise. Valid
-  /// until the next call. Throws as Exchange() does.
+  /// until the next call. Throws LossEndsRun.
   const DecodedRow& Sense();
   /// Agent `id` as it is after Sense().
   const Agent& agent(int id) const { return team_.agent(id); }
@@ -40,24 +47,32 @@ class Flight {
   /// the agent, if its law takes none, or not of this size. An action holds until the next one; at first it is 0.
   void Act(int id, std::span<const double> action);
   /// The states of the current tick, and the commands and messages that answer them. Valid until the next call. Throws
-  /// std::runtime_error if the run does not go on: a law fails, or an event loses an agent, and run.on_agent_loss is
-  /// "abort".
+  /// LossEndsRun, or std::runtime_error if a law fails and run.on_agent_loss is "abort".
   const DecodedRow& Exchange();
   /// Moves the bodies from the current tick to the next one, by the commands of the last Exchange().
   void Step() {
     world_.Step(actuation_);
     has_begun_ = false;
   }
+  /// The experiment as the events up to this tick have changed it. Valid until the next one.
+  const Experiment& now() const { return live_ ? live_->current() : experiment_; }
   /// The current tick; 0 at first.
   std::int64_t tick() const { return world_.tick(); }
 
-  /// An event by hand, which takes effect at the next Exchange().
+  /// An event by hand. It takes effect at the current tick, unless that has begun with Sense() or Exchange(): then at
+  /// the next.
   void Take(Event event);
+  /// The experiment as it will be when the events of that tick have taken effect, those by hand so far among them.
+  LiveExperiment Ahead();
+  /// The row of the newest Sense() or Exchange().
+  const DecodedRow& row() const { return row_; }
   /// The pace that an event of the newest tick has set; nullopt: none has.
   std::optional<double> new_pace() const { return new_pace_; }
   Contacts contacts() const { return world_.contacts(); }
 
  private:
+  /// The tick of events that are given by hand now.
+  std::int64_t NextEventTick() const { return world_.tick() + (has_begun_ ? 1 : 0); }
   LiveExperiment& Live();
   std::span<const int> SilentAt(std::int64_t tick);
   void Begin();

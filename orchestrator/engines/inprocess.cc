@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "experiment/toml/section.h"
 #include "orchestrator/engines/flight.h"
 #include "orchestrator/engines/row_feed.h"
 #include "physics_server/process/tick_gate.h"
@@ -104,6 +105,13 @@ void ActBy(ActionSource& actions, const Experiment& experiment, Flight& flight) 
 }
 
 }  // namespace
+
+void RefuseInProcess(const Experiment& experiment, const std::string& who) {
+  if (experiment.run.mode == Mode::kRealtime)  // in one process there is no pacing
+    throw ConfigError({who + ": expected run.mode = \"lockstep\", got \"realtime\""});
+  if (experiment.network.ros_view)  // there is no DDS
+    throw ConfigError({who + ": expected network.ros_view = false, got true"});
+}
 
 EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSink*>& sinks,
                           const std::function<bool()>& go_on, RunRequests* requests, Crew& crew,

@@ -14,6 +14,9 @@
 
 namespace mascot {
 
+/// Throws ConfigError, with `who` in front, if the experiment cannot be flown in one process.
+void RefuseInProcess(const Experiment& experiment, const std::string& who);
+
 /// Runs the experiment in the threads of `crew` in this process, without DDS, with the same World and Agent classes as
 /// the processes of the other engine. Every sink gets every row, in tick order. `go_on` is called at each tick, and
 /// while a tick waits; the run ends early, in order, when it returns false. People steer the run by `requests`; null:

@@ -59,7 +59,8 @@ class Recording {
   const std::string& config() const { return contents_.attachments.at(kConfigFile); }
   const std::string& name() const { return rows_.plan.name; }
   int agents() const { return rows_.plan.agents; }
-  double time_s(std::int64_t tick) const { return static_cast<double>(tick) / rows_.plan.rate_hz; }
+  int rate_hz() const { return rows_.plan.rate_hz; }
+  double time_s(std::int64_t tick) const { return static_cast<double>(tick) / rate_hz(); }
   /// Whether every agent's commands were recorded.
   bool has_commands() const { return rows_.has_commands; }
   /// The ticks of which it has complete rows.

@@ -4,12 +4,14 @@
 
 namespace mascot {
 
-RunArrays::RunArrays(const Experiment& experiment) : experiment_(experiment), row_(experiment.size()) {
-  for (const AgentConfig& agent : experiment.agents) ids_.push_back(agent.id);
+RunArrays::RunArrays(int agents, int rate_hz) : rate_hz_(rate_hz), row_(agents) {
+  for (int id = 1; id <= agents; ++id) ids_.push_back(id);
 }
 
+RunArrays::RunArrays(const Experiment& experiment) : RunArrays(experiment.size(), experiment.control.rate_hz) {}
+
 void RunArrays::Add(std::int64_t tick, const DecodedRow& row) {
-  row_.Set(experiment_.time_s(tick), row);
+  row_.Set(static_cast<double>(tick) / rate_hz_, row);
   for (std::size_t a = 0; a < values_.size(); ++a)
     values_[a].insert(values_[a].end(), row_.Values(a).begin(), row_.Values(a).end());
 }

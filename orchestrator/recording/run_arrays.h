@@ -14,6 +14,7 @@ namespace mascot {
 /// Keeps the arrays of states.npz of a run in memory, for metrics in Python.
 class RunArrays final : public RowSink {
  public:
+  RunArrays(int agents, int rate_hz);
   explicit RunArrays(const Experiment& experiment);
 
   void Add(const FlownRow& row) override { Add(row.tick(), row.decoded()); }
@@ -28,7 +29,7 @@ class RunArrays final : public RowSink {
   void Reserve(std::size_t rows);
 
  private:
-  const Experiment& experiment_;
+  int rate_hz_;
   StateRow row_;
   std::vector<double> ids_;
   std::array<std::vector<double>, kStateArrays.size()> values_;  // row after row

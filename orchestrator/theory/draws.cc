@@ -41,8 +41,9 @@ void AddOnReading(Random::Stream stream, Section& document, Keys& keys) {
       for (const Section& phase : graph.Children("schedule")) AddOnce("graph.schedule.random", DrawsEdges(phase), keys);
       return;
     }
-    case Random::Stream::kSweep:
-      return;  // by the plan of a sweep, not by run.seed
+    case Random::Stream::kSweep:     // by the plan of a sweep,
+    case Random::Stream::kEpisodes:  // or from one episode to the next: they draw run.seed itself
+      return;
   }
 }
 

@@ -36,10 +36,7 @@ void EngineArgs::Refuse(const Experiment& experiment, bool gives_actions) const 
   if (name == kOverDds && gives_actions && TakesActions(experiment))
     throw ConfigError({"--engine dds: expected laws that take no actions, which are given in one process alone"});
   if (name == kOverDds) return RefuseTooManyProcesses(experiment);
-  if (experiment.run.mode == Mode::kRealtime)  // in one process there is no pacing
-    throw ConfigError({"--engine inprocess: expected run.mode = \"lockstep\", got \"realtime\""});
-  if (experiment.network.ros_view)  // there is no DDS
-    throw ConfigError({"--engine inprocess: expected network.ros_view = false, got true"});
+  RefuseInProcess(experiment, "--engine inprocess");
 }
 
 Crew EngineArgs::MakeCrew(const Experiment& experiment, int others) const {

@@ -24,10 +24,6 @@ class ActionSource;
 class RosSource;
 class RowSink;
 
-/// Values of --engine.
-inline constexpr const char* kOverDds = "dds";
-inline constexpr const char* kInProcess = "inprocess";
-
 /// --engine and --threads.
 struct EngineArgs {
   std::string name;

@@ -71,6 +71,7 @@ LawEntry ActionsLaw() {
       .theory = "none: what is given from outside is not known",
       .source = "docs/laws.md",
       .parameters = kActionsParameters,
+      .is_driven = true,
       .drawing = {},
       .read = ReadActions,
       .make = MakeActions,

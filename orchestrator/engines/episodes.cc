@@ -1,0 +1,188 @@
+#include "orchestrator/engines/episodes.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "agent/laws/laws.h"
+#include "experiment/live_experiment.h"
+#include "orchestrator/engines/inprocess.h"
+
+namespace mascot {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The law table of the team, with the law that actions drive in the place of its own.
+Override DrivenLaw(const std::string& text, const std::string& path) {
+  const auto driven = std::ranges::find(Laws(), true, &LawEntry::is_driven);
+  Section law = Section::FromText(text, path).Child("law");
+  const Value::Table before = law.InTheFile();
+  const auto name = before.find("name");
+  const auto* named = name == before.end() ? nullptr : std::get_if<std::string>(&name->second.data);
+  const auto entry = std::ranges::find_if(Laws(), [&](const LawEntry& any) { return named && any.name == *named; });
+  Value::Table table;
+  table["name"].data = std::string(driven->name);
+  table["axes"].data = std::string(kAxes.Name(entry == Laws().end() ? Laws().front().axes : entry->axes));
+  for (const char* const kept : {"axes", "safety"})
+    if (const auto found = before.find(kept); found != before.end()) table[kept] = found->second;
+  Value value;
+  value.data = std::move(table);
+  return {.key = "law", .value = ToToml(value), .origin = "the law that takes actions"};
+}
+
+bool AreEqual(std::span<const Override> some, std::span<const Override> others) {
+  return std::ranges::equal(some, others, [](const Override& one, const Override& other) {
+    return one.key == other.key && one.value == other.value && one.removes == other.removes;
+  });
+}
+
+/// Whether the experiment is legal as it is, and somebody takes actions in it.
+bool TakesActionsAsItIs(const std::string& text, const std::string& path, std::span<const Override> overrides) try {
+  return TakesActions(LoadExperiment(text, path, overrides, UserCode::kNeverRuns));
+} catch (const ConfigError&) {  // perhaps because of keys for the law that takes them
+  return false;
+}
+
+}  // namespace
+
+Episodes::Episodes(std::string text, std::string path, std::vector<Override> overrides, Crew& crew)
+    : text_(std::move(text)), path_(std::move(path)), overrides_(std::move(overrides)), crew_(crew) {
+  if (!TakesActionsAsItIs(text_, path_, overrides_)) overrides_.insert(overrides_.begin(), DrivenLaw(text_, path_));
+  Reset({});
+}
+
+Episodes::~Episodes() {
+  try {
+    Finish();
+  } catch (const std::exception&) {  // nobody is there to hear of it
+  }
+}
+
+Experiment Episodes::Load(std::vector<Override> changes) const {
+  std::vector<Override> all = overrides_;
+  all.insert(all.end(), changes.begin(), changes.end());
+  Experiment experiment = LoadExperiment(text_, path_, all);
+  RefuseInProcess(experiment, path_);
+  return experiment;
+}
+
+void Episodes::Reset(std::vector<Override> changes) {
+  Finish();
+  const auto launched = Clock::now();
+  std::shared_ptr<const Experiment> experiment = experiment_;
+  if (experiment == nullptr || !AreEqual(changes, history_.changes))
+    experiment = std::make_shared<const Experiment>(Load(changes));
+  flight_ = std::make_unique<Flight>(*experiment, crew_);
+  experiment_ = std::move(experiment);
+  history_ = {.changes = std::move(changes)};
+  began_ = Clock::now();
+  result_ = {};
+  result_.startup_s = std::chrono::duration<double>(began_ - launched).count();
+  is_over_ = false;
+  Sense();
+}
+
+void Episodes::Sense() {
+  try {
+    row_ = &flight_->Sense();
+  } catch (const LossEndsRun& loss) {
+    row_ = &flight_->row();
+    result_.failure = loss.what();
+    End();
+  }
+}
+
+void Episodes::AskWitness() {
+  const std::vector<RowSink*> sinks = next_witness_->Begin(*experiment_);
+  if (sinks.empty()) return;
+  witness_ = next_witness_;
+  feed_.emplace(*experiment_, sinks);
+}
+
+void Episodes::Answer() try {
+  if (flight_->tick() == 0 && next_witness_ != nullptr) AskWitness();
+  const DecodedRow& row = flight_->Exchange();
+  if (feed_) feed_->Add(flight_->tick(), row);
+} catch (const std::exception& failure) {
+  result_.failure = failure.what();
+  End();
+  throw;
+}
+
+void Episodes::End() {
+  is_over_ = true;
+  feed_.reset();
+  if (witness_ == nullptr) return;
+  result_.wall_s = std::chrono::duration<double>(Clock::now() - began_).count();
+  result_.contacts = flight_->contacts();
+  std::exchange(witness_, nullptr)->End(result_);
+}
+
+void Episodes::Act(int id, std::span<const double> action) {
+  flight_->Act(id, action);
+  history_.given.push_back({.tick = tick(), .agent = id, .numbers = action.size()});
+  history_.actions.insert(history_.actions.end(), action.begin(), action.end());
+}
+
+void Episodes::Take(const std::string& toml) {
+  constexpr const char* kByHand = "event by hand";
+  const Event event = EventFrom(std::min(tick() + 1, experiment_->ticks()), toml, experiment_->size(), kByHand);
+  if (StandsElsewhere(toml))
+    throw std::invalid_argument(std::string(kByHand) + ": expected keys of [[events]], got what no file has there");
+  LiveExperiment live = flight_->Ahead();
+  live.CheckAll();
+  live.Take(event);
+  flight_->Take(event);
+  history_.events.push_back({event.tick, toml});
+}
+
+void Episodes::Step() {
+  if (is_over_) throw std::runtime_error("the episode is over: expected a reset");
+  Answer();
+  flight_->Step();
+  Sense();
+  if (is_over_ || tick() < experiment_->ticks()) return;
+  Answer();
+  End();
+}
+
+void Episodes::Finish() {
+  if (flight_ == nullptr || is_over_) return;
+  if (witness_ == nullptr) return End();
+  try {
+    Answer();
+    End();
+  } catch (const std::exception&) {
+    if (result_.failure.empty()) throw;  // else a law has failed: the witness knows, and nobody flies on
+  }
+}
+
+Episodes::Snapshot Episodes::Save() const {
+  Snapshot snapshot = history_;
+  snapshot.tick = tick();
+  return snapshot;
+}
+
+void Episodes::Restore(const Snapshot& snapshot, const std::function<void()>& look) {
+  Reset(snapshot.changes);
+  look();
+  auto event = snapshot.events.begin();
+  auto given = snapshot.given.begin();
+  std::span<const double> numbers = snapshot.actions;
+  const auto give = [&] {
+    for (; given != snapshot.given.end() && given->tick == tick(); ++given) {
+      Act(given->agent, numbers.first(given->numbers));
+      numbers = numbers.subspan(given->numbers);
+    }
+    for (; event != snapshot.events.end() && event->tick == tick() + 1; ++event) Take(event->toml);
+  };
+  give();
+  while (tick() < snapshot.tick) {
+    Step();
+    look();
+    if (!is_over_) give();
+  }
+}
+
+}  // namespace mascot

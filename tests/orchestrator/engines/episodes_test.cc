@@ -1,0 +1,178 @@
+// Flights of one experiment, one after the other, that somebody steps.
+#include <gmock/gmock.h>
+
+#include <string>
+#include <vector>
+
+#include "orchestrator/engines/episodes.h"
+#include "orchestrator/engines/inprocess.h"
+#include "tests/support/recorded_with_actions.h"
+
+namespace mascot {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+/// Two quadrotors that hear each other, with losses and noise.
+std::string TwoOf(const std::string& law = "name = 'actions'\n", const std::string& more = "") {
+  return "[run]\nname = 'pair'\nduration_s = 0.5\n[agents]\ncount = 2\nposition_m = [[0, 0, 1], [0, 3, 1]]\n"
+         "[graph]\ntopology = 'complete'\n[link]\nloss = 0.3\n[sensors.own]\nposition_std_m = 0.1\n[law]\n" +
+         law + more;
+}
+
+/// Keeps what it is given.
+class Seen final : public EpisodeWitness, public RowSink {
+ public:
+  std::vector<RowSink*> Begin(const Experiment& experiment) override {
+    begun.push_back(experiment.run.seed);
+    return {this};
+  }
+  void Add(const FlownRow& row) override {
+    rows.push_back(row.decoded().motions[1].p_WB);
+    ticks.push_back(row.tick());
+  }
+  void End(const EngineResult& result) override { failures.push_back(result.failure); }
+
+  std::vector<std::uint64_t> begun;
+  std::vector<Eigen::Vector3d> rows;
+  std::vector<std::int64_t> ticks;
+  std::vector<std::string> failures;
+};
+
+void Fly(Episodes& episodes, ActionSource& source, std::int64_t until) {
+  while (episodes.tick() < until) {
+    const auto actions = source.At(episodes.tick());
+    for (int id = 1; id <= 2; ++id) episodes.Act(id, actions[static_cast<std::size_t>(id - 1)]);
+    episodes.Step();
+  }
+}
+
+TEST(Episodes, AreTheFlightsOfTheEngine) {
+  const Experiment experiment = Load(TwoOf());
+  Seen expected, seen;
+  Waves waves(1);
+  EXPECT_EQ(RunInProcess(
+                experiment, {&expected}, [] { return true; }, nullptr, Crew::Alone(), [](const std::string&) {}, &waves)
+                .failure,
+            "");
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  episodes.SetWitness(&seen);
+  Fly(episodes, waves, 50);
+  EXPECT_TRUE(episodes.is_over());
+  EXPECT_THAT(seen.failures, ElementsAre(""));
+  EXPECT_EQ(seen.ticks, expected.ticks);
+  EXPECT_EQ(seen.rows, expected.rows);
+}
+
+TEST(Episodes, ThatAreRestoredAreTheSame) {
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  Waves waves(1);
+  episodes.Reset({{.key = "run.seed", .value = "7"}});
+  Fly(episodes, waves, 20);
+  episodes.Take("set = { 'control.max_acceleration_m_per_s2' = 0.2 }");
+  Fly(episodes, waves, 30);
+  const Episodes::Snapshot snapshot = episodes.Save();
+  Fly(episodes, waves, 50);
+  const Eigen::Vector3d end = episodes.row().motions[1].p_WB;
+  std::vector<std::int64_t> looked;
+  episodes.Restore(snapshot, [&] { looked.push_back(episodes.tick()); });
+  EXPECT_EQ(looked.size(), 31u);
+  EXPECT_EQ(looked.back(), 30);
+  EXPECT_EQ(episodes.experiment().run.seed, 7u);
+  EXPECT_EQ(episodes.now().agent(1).control.max_acceleration_m_per_s2, 0.2);
+  Fly(episodes, waves, 50);
+  EXPECT_EQ(episodes.row().motions[1].p_WB, end);
+}
+
+TEST(Episodes, TheLawThatActionsDriveStandsInThePlaceOfTheTeams) {
+  const Episodes episodes(TwoOf("name = 'flocking'\np_gain = 1\nsafety = { distance_m = 0.7 }\n"
+                               "[[agents.override]]\nid = 2\nlaw = { name = 'consensus' }\n"),
+                          "pair.toml", {{.key = "law.message", .value = "2"}});
+  const Experiment& experiment = episodes.experiment();
+  EXPECT_EQ(experiment.agent(1).law.params->action, 5u);
+  EXPECT_EQ(experiment.agent(1).law.safety->distance_m, 0.7);
+  EXPECT_FALSE(experiment.agent(2).takes_actions);
+}
+
+TEST(Episodes, ThoseOfAFileInWhichSomeTakeActionsAreOfThatFile) {
+  const Episodes episodes(TwoOf("name = 'consensus'\n[[agents.override]]\nid = 2\nlaw = { name = 'actions' }\n"),
+                          "pair.toml", {});
+  EXPECT_FALSE(episodes.experiment().agent(1).takes_actions);
+  EXPECT_TRUE(episodes.experiment().agent(2).takes_actions);
+}
+
+TEST(Episodes, AreSeenFromTheirStartOnIfTheyMove) {
+  Seen seen;
+  Waves waves(1);
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  Fly(episodes, waves, 1);
+  episodes.SetWitness(&seen);  // this one has moved already
+  Fly(episodes, waves, 5);
+  for (const char* const seed : {"2", "3"}) episodes.Reset({{.key = "run.seed", .value = seed}});  // 2 does not move
+  Fly(episodes, waves, 3);
+  episodes.Finish();
+  EXPECT_THAT(seen.begun, ElementsAre(3u));
+  EXPECT_THAT(seen.ticks, ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(seen.failures, ElementsAre(""));
+}
+
+TEST(Episodes, ThatAreOverAreNotStepped) {
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  Waves waves(1);
+  Fly(episodes, waves, 50);
+  EXPECT_THAT([&] { episodes.Step(); }, ThrowsMessage<std::runtime_error>("the episode is over: expected a reset"));
+}
+
+TEST(Episodes, ALossThatEndsTheRunEndsThem) {
+  Seen seen;
+  Episodes episodes(TwoOf("name = 'actions'\n", "[[events]]\nat_s = 0.1\nfault = { agent = 2, kind = 'kill' }\n"),
+                    "pair.toml", {});
+  episodes.SetWitness(&seen);
+  Waves waves(1);
+  while (!episodes.is_over()) Fly(episodes, waves, episodes.tick() + 1);
+  EXPECT_EQ(episodes.tick(), 10);
+  EXPECT_THAT(episodes.failure(), HasSubstr("tick 10: agent 2"));
+  EXPECT_THAT(seen.failures, ElementsAre(HasSubstr("tick 10: agent 2")));
+  EXPECT_EQ(seen.ticks.size(), 10u) << "as of a run of the engine";
+}
+
+TEST(Episodes, ALawThatFailsIsToldAndAnotherEpisodeMayFollow) {
+  Seen seen;
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  episodes.SetWitness(&seen);
+  episodes.Act(1, std::vector{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
+  EXPECT_THAT([&] { episodes.Step(); }, ThrowsMessage<std::runtime_error>(HasSubstr("agent 1")));
+  EXPECT_TRUE(episodes.is_over());
+  EXPECT_THAT(seen.failures, ElementsAre(HasSubstr("agent 1")));
+  episodes.Reset({});
+  EXPECT_FALSE(episodes.is_over());
+  EXPECT_THAT(episodes.failure(), IsEmpty());
+}
+
+TEST(Episodes, RefuseEventsThatAreNotLegalAndChangeNothing) {
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  for (const auto& [event, words] : std::vector<std::pair<std::string, std::string>>{
+           {"cut = [[1, 3]]", "event by hand: expected an edge of the graph (i hears j), got [1, 3]"},
+           {"law = { name = 'consensus' }", "event by hand: expected keys of [[events]], got what no file has there"},
+           {"set = { 'run.seed' = 2 }", "event by hand: "}})
+    EXPECT_THAT([&] { episodes.Take(event); }, ThrowsMessage<std::exception>(HasSubstr(words))) << event;
+  episodes.Step();
+  EXPECT_THAT(episodes.row().events, IsEmpty());
+}
+
+TEST(Episodes, KeepTheLastWhenAnotherCannotBegin) {
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  EXPECT_THAT([&] { episodes.Reset({{.key = "run.duration_s", .value = "-1"}}); },
+              ThrowsMessage<ConfigError>(HasSubstr("run.duration_s")));
+  EXPECT_TRUE(episodes.is_over());
+  EXPECT_THAT([&] { Episodes(TwoOf(), "pair.toml", {{.key = "run.mode", .value = "'realtime'"}}); },
+              ThrowsMessage<ConfigError>("pair.toml: expected run.mode = \"lockstep\", got \"realtime\""));
+  episodes.Reset({});
+  episodes.Step();
+}
+
+}  // namespace
+}  // namespace mascot
