@@ -24,7 +24,13 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
 file(CREATE_LINK ../../mascot/configs ${PROJECT_BINARY_DIR}/link_to_configs SYMBOLIC)
 install(FILES ${PROJECT_BINARY_DIR}/link_to_configs DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME configs)
 
+math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+# Two packages: mascot, and python3-mascot (the component python), which is the module for Python.
 set(CPACK_GENERATOR DEB)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL Unspecified python)
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME mascot)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-mascot)
 set(CPACK_PACKAGE_NAME mascot)
 set(CPACK_PACKAGE_CONTACT "MASCOT developers <mascot@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "testbed for decentralised control of multi-agent systems")
@@ -37,9 +43,18 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 # Depends: what the programs link, the page's libraries, and NumPy for laws in Python and for pictures.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, python3-numpy, libjs-three, libjs-dygraphs")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-optuna")  # pictures; tune
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg, bash-completion, cmake, g++, libeigen3-dev")  # films; laws in C++
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_DEPENDS "python3, python3-numpy, libjs-three, libjs-dygraphs")
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_RECOMMENDS "python3-matplotlib, python3-optuna")  # pictures; tune
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS "ffmpeg, bash-completion, cmake, g++, libeigen3-dev, python3-mascot")  # films; laws in C++
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "teams of MASCOT as environments for learning, in Python
+ The module mascot: multi-drone environments in the forms of PettingZoo and
+ Gymnasium, in which agents observe what they hear; laws as functions; arrays
+ of recorded runs.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+  "python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}), python3 (<< ${Python3_VERSION_MAJOR}.${next_minor}), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "mascot (= ${PROJECT_VERSION}-1)")  # verify, view, plot
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-torch")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 include(CPack)

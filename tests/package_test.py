@@ -343,15 +343,18 @@ class Age(unittest.TestCase):
 class Control(unittest.TestCase):
     def test_its_relations_to_other_packages_are_written_as_dpkg_reads_them(self):
         text = (BUILD / "CPackConfig.cmake").read_text()
-        relations = re.findall(r'set\(CPACK_DEBIAN_PACKAGE_(DEPENDS|RECOMMENDS|SUGGESTS) "(.*)"\)', text)
-        self.assertEqual(sorted(field for field, _ in relations), ["DEPENDS", "RECOMMENDS", "SUGGESTS"])
-        for field, names in relations:
+        relations = re.findall(r'set\(CPACK_DEBIAN_(UNSPECIFIED|PYTHON)_PACKAGE_(DEPENDS|RECOMMENDS|SUGGESTS) "(.*)"\)', text)
+        self.assertEqual(sorted(relation[:2] for relation in relations),
+                         [(package, field) for package in ["PYTHON", "UNSPECIFIED"]
+                          for field in ["DEPENDS", "RECOMMENDS", "SUGGESTS"]])
+        one = r"[a-z0-9][a-z0-9+.-]+( \([<>=]+ [0-9.-]+\))?"
+        for *field, names in relations:
             with self.subTest(field=field):
-                self.assertRegex(names, r"^[a-z0-9][a-z0-9+.-]+(, [a-z0-9][a-z0-9+.-]+)*$")
+                self.assertRegex(names, rf"^{one}(, {one})*$")
 
 
-PACKAGES = sorted((ROOT / "build/package").glob("*.deb"))
-NO_PACKAGE = why_old(PACKAGES[0], packaged_files()) if PACKAGES else "there is none"
+PACKAGES = sorted((ROOT / "build/package").glob("mascot_*.deb")) + sorted((ROOT / "build/package").glob("python3-mascot_*.deb"))
+NO_PACKAGE = why_old(PACKAGES[0], packaged_files()) if len(PACKAGES) == 2 else "they are not there"
 
 
 @unittest.skipIf(NO_PACKAGE, f"no package of this build and tree (scripts/package makes it): {NO_PACKAGE}")
@@ -377,6 +380,17 @@ class Package(unittest.TestCase):
             self.assertRegex(depends, rf"\b{re.escape(name)}\b")
         self.assertIn("python3-matplotlib", recommends)
         self.assertIn("python3-optuna", recommends)
+
+    def test_the_module_of_python_is_a_package_of_its_own(self):
+        files = set(re.findall(r" \./(\S+)", output_of("dpkg-deb", "--contents", PACKAGES[1])))
+        folder = "usr/lib/python3/dist-packages/mascot"
+        names = {path.name for path in (ROOT / "python/mascot").iterdir() if path.suffix in (".py", ".typed")}
+        self.assertEqual({file for file in files if not file.endswith("/")},
+                         {f"{folder}/{name}" for name in names | {path.name for path in (BUILD / "python/mascot").glob("*.so")}})
+        depends = output_of("dpkg-deb", "--field", PACKAGES[1], "Depends")
+        for name in ["libbullet3.24", "python3-numpy", "python3 (>= 3.11)", "python3 (<< 3.12)"]:
+            self.assertIn(name, depends)
+        self.assertNotIn("libpython", depends)  # the module is inside of an interpreter
 
 
 if __name__ == "__main__":

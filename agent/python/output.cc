@@ -65,16 +65,14 @@ class PythonOutput {
   std::string line_;
 };
 
-PYBIND11_EMBEDDED_MODULE(mascot_output, module) {
-  py::class_<PythonOutput, std::unique_ptr<PythonOutput, py::nodelete>>(module, "Output")
-      .def("write", &PythonOutput::Write)
-      .def("flush", &PythonOutput::Flush);
-}
-
 }  // namespace
 
 void TakePythonOutput() {
-  const py::module_ module = py::module_::import("mascot_output");
+  // A module that is made now: PYBIND11_EMBEDDED_MODULE makes one when the program starts, which Python itself may be.
+  const py::object module = py::module_::import("types").attr("ModuleType")("mascot_output");
+  py::class_<PythonOutput, std::unique_ptr<PythonOutput, py::nodelete>>(module, "Output")
+      .def("write", &PythonOutput::Write)
+      .def("flush", &PythonOutput::Flush);
   const py::module_ sys = py::module_::import("sys");
   sys.attr("stdout") = py::cast(&PythonOutput::OfOutput(), py::return_value_policy::reference);
   sys.attr("stderr") = py::cast(&PythonOutput::OfErrors(), py::return_value_policy::reference);

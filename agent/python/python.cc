@@ -37,6 +37,10 @@ void AddPythonPath() {
 }
 
 void StartInterpreter() {
+  if (Py_IsInitialized() != 0)  // its program would be guarded as a law is
+    throw std::runtime_error(
+        "a law in Python does not fly inside of another program in Python: `orchestrator up` flies its file, or give "
+        "the function itself to mascot.fly()");
   PinToBaseline();
   // No PYTHON* variables: a PYTHONHOME of another Python would keep this one from starting. Text is UTF-8, whatever the
   // locale.

@@ -1,0 +1,423 @@
+// The module mascot._mascot: what mascot/*.py stands on. Arrays go in and out as NumPy's; while C++ computes, other
+// threads of Python run.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "agent/laws/laws.h"
+#include "agent/network/network.h"
+#include "base/same_floating_point.h"
+#include "experiment/toml/input.h"
+#include "orchestrator/engines/inprocess.h"
+#include "orchestrator/recording/recording.h"
+#include "orchestrator/recording/row_codec.h"
+#include "orchestrator/recording/run_arrays.h"
+#include "python/team_env.h"
+#include "python/team_vector.h"
+
+namespace mascot {
+namespace {
+
+namespace py = pybind11;
+
+using Sets = std::vector<std::pair<std::string, std::string>>;  // keys and their values as TOML
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Bools = py::array_t<bool, py::array::c_style | py::array::forcecast>;
+
+std::vector<Override> OverridesOf(const Sets& sets) {
+  std::vector<Override> overrides;
+  for (const auto& [key, value] : sets)
+    overrides.push_back({.key = key, .value = value, .origin = "set " + key + " = " + value});
+  return overrides;
+}
+
+std::optional<std::vector<Override>> OverridesOf(const std::optional<Sets>& sets) {
+  return sets ? std::optional(OverridesOf(*sets)) : std::nullopt;
+}
+
+/// Calls work() without the lock of the interpreter, and with the arithmetic of our programs.
+template <class Work>
+auto Compute(Work&& work) {
+  const py::gil_scoped_release release;
+  const SameFloatingPoint same;
+  return work();
+}
+
+py::array_t<double> ArrayOf(std::span<const double> values, std::vector<py::ssize_t> shape) {
+  py::array_t<double> array(std::move(shape));
+  std::ranges::copy(values, array.mutable_data());
+  return array;
+}
+
+std::vector<char> CharsOf(const Bools& bools) { return {bools.data(), bools.data() + bools.size()}; }
+
+py::ssize_t Count(std::size_t count) { return static_cast<py::ssize_t>(count); }
+
+/// Requires `count` numbers; whoever calls this from Python has checked the shape.
+std::span<const double> Numbers(const Doubles& array, std::size_t count) {
+  if (static_cast<std::size_t>(array.size()) != count)
+    throw py::value_error("expected " + std::to_string(count) + " numbers, got " + std::to_string(array.size()));
+  return {array.data(), count};
+}
+
+// --- what does not change -----------------------------------------------------------------------------
+
+py::dict AboutTeam(const TeamEnv& team) {
+  const Experiment& experiment = team.experiment();
+  py::dict about;
+  about["name"] = experiment.run.name;
+  about["agents"] = experiment.size();
+  about["ids"] = team.agents();
+  about["rate_hz"] = experiment.control.rate_hz;
+  about["ticks"] = experiment.ticks();
+  about["duration_s"] = experiment.run.duration_s;
+  about["action_size"] = team.action_size();
+  py::list action_high;
+  for (std::size_t k = 0; k < team.agents().size(); ++k)
+    action_high.append(ArrayOf(team.action_high(k), {Count(team.action_size(k))}));
+  about["action_high"] = action_high;
+  about["observation_high"] = ArrayOf(team.observation_high(), {Count(team.layout().size())});
+  about["observation_text"] = team.layout().Text();
+  about["observation_hash"] = team.layout().Hash();
+  about["observation_names"] = team.layout().Names();
+  about["places"] = team.layout().places;
+  about["message"] = team.layout().message;
+  return about;
+}
+
+// --- one environment ------------------------------------------------------------------------------------
+
+py::array_t<double> ObservationsOf(const TeamEnv& team) {
+  return ArrayOf(team.observations(), {Count(team.agents().size()), Count(team.layout().size())});
+}
+
+py::array_t<double> StateOf(const TeamEnv& team) {
+  return ArrayOf(team.state(), {team.experiment().size(), Count(TeamEnv::kStateSize)});
+}
+
+py::array_t<bool> LostOf(const TeamEnv& team) {
+  py::array_t<bool> lost(Count(team.agents().size()));
+  for (std::size_t k = 0; k < team.agents().size(); ++k) lost.mutable_data()[k] = team.is_lost(k);
+  return lost;
+}
+
+py::array_t<double> Vector(const Eigen::Vector3d& v) { return ArrayOf({v.data(), 3}, {3}); }
+
+/// What a law knows of an agent: id, position, velocity, acceleration, orientation (w, x, y, z), angular velocity,
+/// weight, message or None, age_s.
+py::tuple Known(int id, const Motion& motion, double weight, std::optional<std::span<const double>> message,
+                double age_s) {
+  const auto& q = motion.q_WB;
+  const std::array orientation{q.w(), q.x(), q.y(), q.z()};
+  py::object said = py::none();
+  if (message && !message->empty()) said = ArrayOf(*message, {Count(message->size())});
+  return py::make_tuple(id, Vector(motion.p_WB), Vector(motion.v_WB), Vector(motion.a_WB),
+                        ArrayOf(orientation, {4}), Vector(motion.w_WB_B), weight, said, age_s);
+}
+
+py::tuple PerceivedBy(const TeamEnv& team, int id) {
+  const Agent& agent = team.episodes().agent(id);
+  py::list neighbours;
+  for (const Heard& heard : agent.heard())
+    neighbours.append(Known(heard.id, heard.motion, heard.weight, heard.message, heard.age_s));
+  return py::make_tuple(Known(id, agent.measured(), 0, {}, 0), neighbours);
+}
+
+py::tuple StateOfSnapshot(const Episodes::Snapshot& snapshot) {
+  py::list changes, given, events;
+  for (const Override& change : snapshot.changes) changes.append(py::make_tuple(change.key, change.value));
+  for (const auto& one : snapshot.given) given.append(py::make_tuple(one.tick, one.agent, one.numbers));
+  for (const auto& [tick, toml] : snapshot.events) events.append(py::make_tuple(tick, toml));
+  return py::make_tuple(changes, snapshot.tick, given, ArrayOf(snapshot.actions, {Count(snapshot.actions.size())}),
+                        events);
+}
+
+Episodes::Snapshot SnapshotOf(const py::tuple& state) {
+  Episodes::Snapshot snapshot{.changes = OverridesOf(state[0].cast<Sets>()), .tick = state[1].cast<std::int64_t>()};
+  for (const auto& [tick, agent, numbers] :
+       state[2].cast<std::vector<std::tuple<std::int64_t, int, std::size_t>>>())
+    snapshot.given.push_back({.tick = tick, .agent = agent, .numbers = numbers});
+  const auto actions = state[3].cast<Doubles>();
+  snapshot.actions.assign(actions.data(), actions.data() + actions.size());
+  for (const auto& [tick, toml] : state[4].cast<std::vector<std::pair<std::int64_t, std::string>>>())
+    snapshot.events.push_back({tick, toml});
+  return snapshot;
+}
+
+void BindTeamEnv(py::module_& module) {
+  py::class_<Episodes::Snapshot>(module, "Snapshot", "An episode so far; restore() of an environment flies it again.")
+      .def_readonly("tick", &Episodes::Snapshot::tick)
+      .def(py::pickle(&StateOfSnapshot, &SnapshotOf));
+
+  py::class_<TeamEnv>(module, "TeamEnv")
+      .def(py::init([](const std::string& path, const Sets& sets) {
+             return Compute([&] {
+               return std::make_unique<TeamEnv>(ReadInput(path), NameOfInput(path), OverridesOf(sets));
+             });
+           }))
+      .def("about", &AboutTeam)
+      .def("reset",
+           [](TeamEnv& team, std::optional<std::uint64_t> seed, const std::optional<Sets>& sets) {
+             Compute([&] { team.Reset(seed, OverridesOf(sets)); });
+           })
+      .def("step",
+           [](TeamEnv& team, const Doubles& actions, const Bools& given) {
+             const auto numbers = Numbers(actions, team.agents().size() * team.action_size());
+             const std::vector<char> which = CharsOf(given);
+             Compute([&] { team.Step(numbers, which); });
+           })
+      .def("go_on", [](TeamEnv& team) { Compute([&] { team.Step(); }); })
+      .def("act", [](TeamEnv& team, int id, const Doubles& action) {
+        team.Act(id, {action.data(), static_cast<std::size_t>(action.size())});
+      })
+      .def("take", [](TeamEnv& team, const std::string& event) { Compute([&] { team.Take(event); }); })
+      .def("observations", &ObservationsOf)
+      .def("state", &StateOf)
+      .def("lost", &LostOf)
+      .def("perceived", &PerceivedBy)
+      .def("disagreement_m", &TeamEnv::disagreement_m)
+      .def_property_readonly("seed", &TeamEnv::seed)
+      .def_property_readonly("tick", [](const TeamEnv& team) { return team.episodes().tick(); })
+      .def_property_readonly("time_s",
+                             [](const TeamEnv& team) { return team.experiment().time_s(team.episodes().tick()); })
+      .def_property_readonly("is_at_end", &TeamEnv::is_at_end)
+      .def_property_readonly("is_over", &TeamEnv::is_over)
+      .def_property_readonly("is_terminated", &IsTerminated)
+      .def_property_readonly("failure", &TeamEnv::failure)
+      .def("record",
+           [](TeamEnv& team, const std::optional<std::string>& out, bool force) {
+             return Compute([&] { return team.Record(out, force); });
+           })
+      .def("finish", [](TeamEnv& team) { Compute([&] { team.Finish(); }); })
+      .def("save", &TeamEnv::Save)
+      .def("restore", [](TeamEnv& team, const Episodes::Snapshot& snapshot) {
+        Compute([&] { team.Restore(snapshot); });
+      });
+}
+
+// --- many environments --------------------------------------------------------------------------------
+
+/// A new array for what all environments observe, and where it begins.
+template <class Number>
+std::pair<py::array, TeamVector::Observations> NewObservations(const TeamVector& vector) {
+  const TeamEnv& team = vector.first();
+  py::array_t<Number> array({Count(vector.size()), Count(team.agents().size()), Count(team.layout().size())});
+  const std::span<Number> numbers(array.mutable_data(), static_cast<std::size_t>(array.size()));
+  return {std::move(array), numbers};
+}
+
+std::pair<py::array, TeamVector::Observations> NewObservations(const TeamVector& vector, bool in_floats) {
+  return in_floats ? NewObservations<float>(vector) : NewObservations<double>(vector);
+}
+
+/// How the environments ended, or not, with the last step: disagreement, terminated, truncated, reset at this step, and
+/// whether some agent is lost.
+py::tuple EndsOf(const TeamVector& vector) {
+  const auto envs = Count(vector.size());
+  py::array_t<double> disagreement(envs);
+  py::array_t<bool> terminated(envs), truncated(envs), was_reset(envs);
+  bool any_is_lost = false;
+  for (std::size_t env = 0; env < vector.size(); ++env) {
+    const TeamVector::Reached& reached = vector.reached(env);
+    disagreement.mutable_data()[env] = reached.disagreement_m;
+    terminated.mutable_data()[env] = reached.terminated;
+    truncated.mutable_data()[env] = reached.truncated;
+    was_reset.mutable_data()[env] = reached.was_reset;
+    any_is_lost = any_is_lost || reached.any_is_lost;
+  }
+  return py::make_tuple(disagreement, terminated, truncated, was_reset, any_is_lost);
+}
+
+/// Of all environments, at the tick that the last step has reached.
+py::array_t<double> ReachedStates(const TeamVector& vector) {
+  py::array_t<double> states(
+      {Count(vector.size()), py::ssize_t{vector.first().experiment().size()}, Count(TeamEnv::kStateSize)});
+  double* to = states.mutable_data();
+  for (std::size_t env = 0; env < vector.size(); ++env) to = std::ranges::copy(vector.reached(env).state, to).out;
+  return states;
+}
+
+py::array_t<bool> ReachedLosses(const TeamVector& vector) {
+  py::array_t<bool> lost({Count(vector.size()), Count(vector.first().agents().size())});
+  bool* to = lost.mutable_data();
+  for (std::size_t env = 0; env < vector.size(); ++env) to = std::ranges::copy(vector.reached(env).is_lost, to).out;
+  return lost;
+}
+
+/// What an environment observed at the end of its episode; None: it was not reset at this step.
+py::object FinalObservations(const TeamVector& vector, std::size_t env) {
+  const TeamVector::Reached& reached = vector.reached(env);
+  const TeamEnv& team = vector.first();
+  if (!reached.was_reset || reached.observations.empty()) return py::none();
+  return ArrayOf(reached.observations, {Count(team.agents().size()), Count(team.layout().size())});
+}
+
+void BindTeamVector(py::module_& module) {
+  py::enum_<TeamVector::Autoreset>(module, "Autoreset")
+      .value("NEXT_STEP", TeamVector::Autoreset::kNextStep)
+      .value("SAME_STEP", TeamVector::Autoreset::kSameStep)
+      .value("DISABLED", TeamVector::Autoreset::kDisabled);
+
+  py::class_<TeamVector>(module, "TeamVector")
+      .def(py::init([](const std::string& path, const Sets& sets, int count, int threads,
+                       TeamVector::Autoreset autoreset) {
+        return Compute([&] {
+          return std::make_unique<TeamVector>(ReadInput(path), NameOfInput(path), OverridesOf(sets), count, threads,
+                                              autoreset);
+        });
+      }))
+      .def("about", [](const TeamVector& vector) { return AboutTeam(vector.first()); })
+      .def("reset",
+           [](TeamVector& vector, const std::vector<std::optional<std::uint64_t>>& seeds,
+              const std::optional<Sets>& sets, const Bools& mask, bool in_floats) {
+             const std::vector<char> which = CharsOf(mask);
+             const auto observations = NewObservations(vector, in_floats);
+             Compute([&] { vector.Reset(seeds, OverridesOf(sets), which, observations.second); });
+             return observations.first;
+           })
+      .def("step",
+           [](TeamVector& vector, const Doubles& actions, bool in_floats) {
+             const TeamEnv& team = vector.first();
+             const auto numbers = Numbers(actions, vector.size() * team.agents().size() * team.action_size());
+             const auto observations = NewObservations(vector, in_floats);
+             Compute([&] { vector.Step(numbers, observations.second); });
+             return observations.first;
+           })
+      .def("ends", &EndsOf)
+      .def("reached_states", &ReachedStates)
+      .def("reached_losses", &ReachedLosses)
+      .def("final_observations", &FinalObservations)
+      .def("failure", [](const TeamVector& vector, std::size_t env) { return vector.reached(env).failure; })
+      .def("state",
+           [](TeamVector& vector, std::size_t env) { return StateOf(vector.at(env)); })
+      .def("seed", [](TeamVector& vector, std::size_t env) { return vector.at(env).seed(); })
+      .def("record",
+           [](TeamVector& vector, std::size_t env, const std::string& out, bool force) {
+             return Compute([&] { return vector.at(env).Record(out, force); });
+           })
+      .def("finish", [](TeamVector& vector) {
+        Compute([&] {
+          for (std::size_t env = 0; env < vector.size(); ++env) vector.at(env).Finish();
+        });
+      });
+}
+
+// --- policies -------------------------------------------------------------------------------------------
+
+/// A network as agents compute it.
+class Policy {
+ public:
+  explicit Policy(const std::string& path)
+      : network_(Network::FromOnnx(ReadInput(path))), scratch_(network_.MakeScratch()) {}
+  const Network& network() const { return network_; }
+  /// The answers to rows of numbers.
+  py::array_t<double> Answer(const Doubles& rows) {
+    const auto inputs = Count(network_.inputs()), outputs = Count(network_.outputs());
+    if (rows.ndim() != 2 || rows.shape(1) != inputs)
+      throw py::value_error("expected rows of " + std::to_string(inputs) + " numbers");
+    py::array_t<double> answers({rows.shape(0), outputs});
+    const SameFloatingPoint same;
+    for (py::ssize_t row = 0; row < rows.shape(0); ++row)
+      std::ranges::copy(network_.Answer({rows.data(row, 0), network_.inputs()}, scratch_), answers.mutable_data(row, 0));
+    return answers;
+  }
+
+ private:
+  const Network network_;
+  Network::Scratch scratch_;
+};
+
+void BindPolicy(py::module_& module) {
+  py::class_<Policy>(module, "Policy")
+      .def(py::init<const std::string&>())
+      .def("answer", &Policy::Answer)
+      .def_property_readonly("inputs", [](const Policy& policy) { return policy.network().inputs(); })
+      .def_property_readonly("outputs", [](const Policy& policy) { return policy.network().outputs(); })
+      .def_property_readonly("metadata", [](const Policy& policy) { return policy.network().metadata(); });
+}
+
+// --- whole runs -----------------------------------------------------------------------------------------
+
+/// Whether Python has a signal to handle, such as Ctrl-C: looks a few times a second.
+class Signals {
+ public:
+  bool AreThere() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return false;
+    next_ = now + std::chrono::milliseconds(50);
+    const py::gil_scoped_acquire acquire;
+    return PyErr_CheckSignals() != 0;  // then it has set what the handler has raised
+  }
+
+ private:
+  std::chrono::steady_clock::time_point next_ = {};
+};
+
+/// Flies an experiment by its own laws, and records it. Returns the run's folder.
+std::string Fly(const std::string& path, const Sets& sets, const std::optional<std::string>& out, bool force) {
+  EngineResult result;
+  bool is_interrupted = false;
+  const std::string folder = Compute([&] {
+    const Experiment experiment = LoadExperiment(ReadInput(path), NameOfInput(path), OverridesOf(sets));
+    RefuseActions(experiment);
+    RefuseInProcess(experiment, path);
+    EpisodeRecord record(out, experiment, force);
+    Signals signals;
+    const auto goes_on = [&] { return !(is_interrupted = is_interrupted || signals.AreThere()); };
+    result = RunInProcess(experiment, record.Begin(experiment), goes_on);
+    record.End(result);
+    return record.folder().string();
+  });
+  if (is_interrupted) throw py::error_already_set();
+  if (!result.failure.empty()) throw std::runtime_error(result.failure);
+  return folder;
+}
+
+/// The arrays of a recording, by name, and the words for what is missing.
+py::tuple ArraysOf(const std::string& run) {
+  std::unique_ptr<const Recording> recording;
+  std::unique_ptr<RunArrays> arrays;
+  Compute([&] {
+    recording = std::make_unique<const Recording>(run);
+    arrays = std::make_unique<RunArrays>(recording->agents(), recording->rate_hz());
+    DecodedRow decoded(recording->agents());
+    recording->ForEachRow([&](const Row& row) {
+      Decode(row, decoded);
+      arrays->Add(row.tick, decoded);
+    });
+  });
+  py::dict all;
+  for (const RunArray& array : arrays->All()) {
+    const auto kind = std::ranges::find(kStateArrays, array.name, &StateArray::name);
+    if (kind != kStateArrays.end() && kind->of_command && !recording->has_commands()) continue;
+    const std::vector<py::ssize_t> shape(array.shape.begin(), array.shape.end());
+    py::object values = ArrayOf(array.values, shape);
+    if (array.of_integers) values = values.attr("astype")("int64");
+    all[py::str(array.name)] = values;
+  }
+  return py::make_tuple(recording->path(), all, recording->loss());
+}
+
+}  // namespace
+}  // namespace mascot
+
+PYBIND11_MODULE(_mascot, module) {
+  using namespace mascot;
+  py::register_exception<ConfigError>(module, "ConfigError", PyExc_ValueError);
+  BindTeamEnv(module);
+  BindTeamVector(module);
+  BindPolicy(module);
+  py::register_exception<NetworkError>(module, "NetworkError", PyExc_ValueError);
+  module.def("fly", &Fly);
+  module.def("arrays", &ArraysOf);
+}

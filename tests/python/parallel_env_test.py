@@ -1,0 +1,421 @@
+#!/usr/bin/python3
+"""parallel_env(): PettingZoo's rules, what agents observe, rewards, losses, events, seeds, words of errors."""
+
+import pickle
+import signal
+import threading
+import unittest
+
+import numpy as np
+import support
+from support import LEADERLESS, TestCase, mascot
+
+SHORT = {"run.duration_s": 0.5}
+LOST = """
+[run]
+duration_s = 1.0
+on_agent_loss = "hold"
+[agents]
+count = 3
+position_m = [[0, 0, 1], [5, 0, 2], [0, 5, 3]]
+[graph]
+topology = "complete"
+[[events]]
+at_s = 0.2
+fault = { agent = 2, kind = "kill" }
+[[events]]
+at_s = 0.4
+restart = 2
+"""
+
+
+def team(**keys):
+    return mascot.parallel_env(LEADERLESS, set={**SHORT, **keys.pop("set", {})}, **keys)
+
+
+def still(env):
+    return {agent: np.zeros(env.action_space(agent).shape) for agent in env.agents}
+
+
+class Rules(TestCase):
+    """What PettingZoo's own tests of an environment look at."""
+
+    def test_an_episode_from_start_to_end(self):
+        env = team(set={"link.loss": 0.2, "law.message": 2})
+        for _ in range(2):
+            observations, infos = env.reset()
+            self.assertEqual(env.agents, env.possible_agents)
+            self.assertEqual(list(infos), env.agents)
+            steps = 0
+            while env.agents:
+                for agent in env.agents:
+                    self.assertIs(env.observation_space(agent), env.observation_space(agent))
+                    self.assertIs(env.action_space(agent), env.action_space(agent))
+                    self.assertEqual(observations[agent].dtype, np.float32)
+                    self.assertTrue(env.observation_space(agent).contains(observations[agent]))
+                before = list(env.agents)
+                result = env.step({agent: env.action_space(agent).sample() for agent in env.agents})
+                observations, rewards, terminations, truncations, infos = result
+                for one in result:
+                    self.assertEqual(list(one), before)
+                self.assertTrue(all(type(reward) is float for reward in rewards.values()))
+                self.assertTrue(all(type(end) is bool for end in [*terminations.values(), *truncations.values()]))
+                steps += 1
+            self.assertEqual(steps, 50)
+            self.assertTrue(all(truncations.values()))
+            self.assertFalse(any(terminations.values()))
+        self.assertEqual(env.step({}), ({}, {}, {}, {}, {}))
+        self.assertEqual((env.num_agents, env.max_num_agents), (0, 4))
+        self.assertIs(env.unwrapped, env)
+
+    def test_spaces_are_finite_and_their_samples_are_in_them(self):
+        env = team(set={"law.message": 2, "sensors.own.position_std_m": 0.1})
+        for agent in env.possible_agents:
+            for space in (env.observation_space(agent), env.action_space(agent)):
+                self.assertTrue(space.is_bounded())
+                self.assertTrue(space.contains(space.sample()))
+        np.testing.assert_array_equal(env.action_space("agent_1").high, np.float32([3, 3, 3, 1, 1]))
+        velocities = team(set={"law.output": "velocity", "control.max_speed_m_per_s": 2.0})
+        np.testing.assert_array_equal(velocities.action_space("agent_1").high, np.float32([2, 2, 2]))
+
+    def test_equal_seeds_give_equal_samples_of_a_space(self):
+        space = team().action_space("agent_1")
+        space.seed(5)
+        first = space.sample()
+        space.seed(5)
+        np.testing.assert_array_equal(first, space.sample())
+
+    def test_a_lost_agent_is_terminated_once_and_does_not_come_back(self):
+        env = mascot.parallel_env(self.write(LOST))
+        env.reset()
+        ended = []
+        while env.agents:
+            observations, _, terminations, truncations, _ = env.step(still(env))
+            self.assertEqual("agent_2" in env.agents, not ended and not terminations["agent_2"])
+            ended += [agent for agent, end in terminations.items() if end]
+            if "agent_2" in observations and terminations["agent_2"]:
+                self.assertAlmostEqual(env.time_s, 0.2)
+                self.assertFalse(truncations["agent_2"])
+        self.assertEqual(ended, ["agent_2"])
+        self.assertEqual(sorted(truncations), ["agent_1", "agent_3"])
+
+    def test_a_loss_that_ends_the_run_terminates_all_and_says_why(self):
+        env = mascot.parallel_env(self.write(LOST.replace('"hold"', '"abort"')))
+        env.reset()
+        while env.agents:
+            _, _, terminations, truncations, infos = env.step(still(env))
+        self.assertEqual(list(terminations.values()), [True] * 3)
+        self.assertEqual(list(truncations.values()), [False] * 3)
+        self.assertIn("tick 20: agent 2", infos["agent_1"]["failure"])
+        env.reset()
+        self.assertEqual(env.agents, env.possible_agents)
+
+
+class Observations(TestCase):
+    def test_an_agent_observes_itself_and_whom_it_hears_alone(self):
+        env = mascot.parallel_env(self.write("""
+[run]
+duration_s = 1.0
+[agents]
+count = 3
+position_m = [[0, 0, 1], [5, 0, 2], [0, 7, 3]]
+[graph]
+edges = [[1, 2, 0.5], [2, 3]]
+"""), dtype="float64")
+        observations, _ = env.reset()
+        names = env.observation_layout["names"]
+        at = {name: k for k, name in enumerate(names)}
+        one = observations["agent_1"]
+        np.testing.assert_array_equal(one[:3], [0, 0, 1])
+        first = at["neighbour[0].p.x"]
+        np.testing.assert_array_equal(one[first:first + 3], [5, 0, 1])
+        self.assertEqual((one[at["neighbour[0].weight"]], one[at["neighbour[0].heard"]]), (0.5, 1))
+        np.testing.assert_array_equal(observations["agent_3"][10:], np.zeros(9))  # it hears nobody
+        self.assertEqual(len(one), len(names))
+
+    def test_a_message_is_heard_at_the_next_tick(self):
+        env = team(set={"law.message": 1}, dtype="float64")
+        env.reset()
+        at = env.observation_layout["names"].index("neighbour[0].message[0]")
+        heard = []
+        for said in (0.25, 0.5, 0.75):
+            observations = env.step({a: [0, 0, 0, said] for a in env.agents})[0]
+            heard.append(observations["agent_1"][at])
+        self.assertEqual(heard, [0.25, 0.5, 0.75])
+
+    def test_noise_range_and_loss_are_in_what_is_observed(self):
+        def first(**keys):
+            env = team(set=keys, dtype="float64")
+            return env.reset(seed=3)[0]["agent_1"], env.observation_layout["names"]
+
+        exact, names = first()
+        noisy, _ = first(**{"sensors.own.position_std_m": 0.1})
+        deaf, _ = first(**{"link.loss": 1.0})
+        heard = [k for k, name in enumerate(names) if name.endswith("heard")]
+        self.assertTrue((exact[:3] != noisy[:3]).all())
+        self.assertEqual(exact[heard].tolist(), [1, 1, 1])
+        self.assertEqual(deaf[heard].tolist(), [0, 0, 0])
+
+    def test_the_state_is_the_whole_true_team(self):
+        env = team(set={"sensors.own.position_std_m": 0.5}, dtype="float64")
+        env.reset()
+        self.assertEqual(env.state().shape, (4, 13))
+        self.assertTrue(env.state_space.contains(env.state()))
+        np.testing.assert_allclose(np.linalg.norm(env.state()[:, 6:10], axis=1), 1, atol=1e-12)
+
+    def test_an_observation_stays_as_it_was(self):
+        env = team()
+        first, _ = env.reset()
+        copy = first["agent_1"].copy()
+        env.step({a: np.ones(3) for a in env.agents})
+        np.testing.assert_array_equal(first["agent_1"], copy)
+
+    def test_agents_with_laws_of_their_own_fly_by_them(self):
+        env = mascot.parallel_env(self.write("""
+[run]
+duration_s = 1.0
+[agents]
+count = 2
+position_m = [[0, 0, 1], [5, 0, 2]]
+[[agents.override]]
+id = 2
+law = { name = "waypoint", waypoints_m = [[9, 0, 2]] }
+[graph]
+topology = "complete"
+"""))
+        env.reset()
+        self.assertEqual(env.possible_agents, ["agent_1"])
+        while env.agents:
+            env.step(still(env))
+        self.assertGreater(env.state()[1, 0], 5.1)
+        self.assertLess(abs(env.state()[0, 0]), 1e-6)
+
+    def test_the_safety_filter_of_the_law_stays(self):
+        def nearest(safety):
+            env = mascot.parallel_env(self.write(f"""
+[run]
+duration_s = 4.0
+[agents]
+count = 2
+position_m = [[0, 0, 1], [2, 0, 1]]
+[graph]
+topology = "complete"
+[law]
+name = "consensus"
+axes = "xyz"
+{safety}
+"""))
+            env.reset()
+            distances = []
+            while env.agents:
+                env.step({"agent_1": [1, 0, 0], "agent_2": [-1, 0, 0]})
+                distances.append(np.linalg.norm(np.diff(env.state()[:, :3], axis=0)))
+            return min(distances)
+
+        self.assertGreater(nearest("safety = { distance_m = 1.2 }"), 1.1)
+        self.assertLess(nearest(""), 1)
+
+
+class Rewards(TestCase):
+    def test_the_default_is_minus_the_disagreement(self):
+        env = team(dtype="float64")
+        env.reset()
+        _, rewards, *_ = env.step(still(env))
+        away = env.state()[:, :2] - env.state()[:, :2].mean(axis=0)
+        self.assertAlmostEqual(rewards["agent_3"], -np.linalg.norm(away, axis=1).max(), places=12)
+        self.assertEqual(len(set(rewards.values())), 1)
+
+    def test_a_function_gets_the_state_and_the_actions(self):
+        env = team(reward=lambda p, v, action: p[:, 2] + 10 * action[:, 1], dtype="float64")
+        env.reset()
+        _, rewards, *_ = env.step({a: [0, k, 0] for k, a in enumerate(env.agents)})
+        np.testing.assert_allclose(list(rewards.values()), env.state()[:, 2] + 10 * np.arange(4))
+
+    def test_a_reward_of_another_shape_is_refused(self):
+        env = team(reward=lambda p, v, action: p)
+        env.reset()
+        with self.assertRaisesRegex(ValueError, r"reward: expected a number, or an array of the shape \(4,\), got an array of"):
+            env.step(still(env))
+
+
+class Seeds(TestCase):
+    def paths(self, env, *seeds):
+        places = []
+        for seed in seeds:
+            observations, _ = env.reset(seed=seed)
+            places.append(observations["agent_1"].tolist())
+        return places
+
+    def test_a_seed_is_that_of_the_run_and_the_next_follow_from_it(self):
+        env = team()
+        one, two, three = self.paths(env, 7, None, None)
+        self.assertEqual(self.paths(team(), 7, None, None), [one, two, three])
+        self.assertEqual(self.paths(team(seed=7), None, None, None), [one, two, three])
+        self.assertEqual(len({str(place) for place in (one, two, three)}), 3)
+        self.assertEqual(self.paths(team(set={"run.seed": 7}), None), [one])
+
+    def test_the_first_episode_has_the_seed_of_the_file(self):
+        env = team()
+        env.reset()
+        self.assertEqual(env.episode_seed, 1)
+
+    def test_options_set_keys_of_this_and_the_next_episodes(self):
+        env = team()
+        env.reset(options={"set": {"run.duration_s": 0.1}, "another": 1})
+        for _ in range(2):
+            steps = 0
+            while env.agents:
+                env.step(still(env))
+                steps += 1
+            self.assertEqual(steps, 10)
+            env.reset()
+
+
+class Events(TestCase):
+    def test_an_event_by_hand_takes_effect_at_the_next_tick(self):
+        env = team(dtype="float64")
+        env.reset()
+        heard = env.observation_layout["names"].index("neighbour[0].heard")
+        env.event(cut=[[1, 2]])
+        observations = env.step(still(env))[0]
+        self.assertEqual(observations["agent_1"][heard], 0)
+        self.assertEqual(observations["agent_2"][heard], 1)
+
+    def test_one_that_is_not_legal_is_refused_and_changes_nothing(self):
+        env = team()
+        env.reset()
+        with self.assertRaisesRegex(ValueError, "event by hand: .*max_acceleration"):
+            env.event(set={"control.max_accelerations_m_per_s2": 1.0})
+        with self.assertRaisesRegex(ValueError, "expected keys of"):
+            env.event(law={"name": "consensus"})
+        env.step(still(env))
+
+
+class Snapshots(TestCase):
+    def test_a_restored_episode_is_the_same_to_the_last_bit(self):
+        env = team(set={"link.loss": 0.3, "sensors.own.position_std_m": 0.1, "law.message": 1}, dtype="float64")
+        env.reset(seed=9)
+        actions = np.random.default_rng(1).normal(size=(40, 4, 4))
+
+        def fly(steps):
+            observed = []
+            for step in steps:
+                if step == 5:
+                    env.event(set={"control.max_acceleration_m_per_s2": 1.0})
+                observed.append(list(env.step(dict(zip(env.agents, actions[step])))[0].values()))
+            return np.array(observed)
+
+        fly(range(20))
+        snapshot = pickle.loads(pickle.dumps(env.snapshot()))
+        rest = fly(range(20, 40))
+        for _ in range(2):
+            env.restore(snapshot)
+            self.assertEqual(snapshot.tick, 20)
+            np.testing.assert_array_equal(fly(range(20, 40)), rest)
+        other = team(set={"link.loss": 0.3, "sensors.own.position_std_m": 0.1, "law.message": 1}, dtype="float64")
+        env = other
+        env.restore(snapshot)
+        np.testing.assert_array_equal(fly(range(20, 40)), rest)
+
+    def test_who_was_lost_stays_lost(self):
+        env = mascot.parallel_env(self.write(LOST))
+        env.reset()
+        for _ in range(60):
+            env.step(still(env))
+        snapshot = env.snapshot()
+        env.reset()
+        env.restore(snapshot)
+        self.assertEqual(env.agents, ["agent_1", "agent_3"])
+
+
+class Mistakes(TestCase):
+    def expect(self, words, call, error=ValueError):
+        with self.assertRaises(error) as caught:
+            call()
+        self.assertIn(words, str(caught.exception))
+
+    def test_they_are_told_in_words(self):
+        env = team()
+        env.reset()
+        actions = still(env)
+        self.expect("actions: expected one for each of env.agents, got none for 'agent_4'",
+                    lambda: env.step({a: actions[a] for a in env.agents[:3]}))
+        self.expect("actions: expected one for each of env.agents, got one for 'agent_9'",
+                    lambda: env.step({**actions, "agent_9": actions["agent_1"]}))
+        self.expect("actions['agent_2']: expected the shape (3,), got (2,)",
+                    lambda: env.step({**actions, "agent_2": [1, 2]}))
+        self.expect("actions['agent_2']: expected finite numbers",
+                    lambda: env.step({**actions, "agent_2": [1, float("nan"), 0]}))
+        env.step(actions)  # none of these has done harm
+        self.expect("dtype: expected float32 or float64, got int32", lambda: team(dtype="int32"))
+        self.expect("expected a str, bool, int, float, list or dict for an experiment file, got object",
+                    lambda: team(set={"law.message": object()}), TypeError)
+        env.close()
+        self.expect("actions: expected none, because no agent is left", lambda: env.step(actions))
+
+    def test_those_of_the_file_have_their_place(self):
+        self.expect("set run.duration_s = -1: run.duration_s: expected", lambda: team(set={"run.duration_s": -1}),
+                    mascot.ConfigError)
+        self.expect("nowhere.toml", lambda: mascot.parallel_env("nowhere.toml"), mascot.ConfigError)
+        self.expect('team.toml:3:1: run.duration: unknown key (did you mean "duration_s"?)',
+                    lambda: mascot.parallel_env(self.write("\n[run]\nduration = 1\n")), mascot.ConfigError)
+        self.expect('expected run.mode = "lockstep", got "realtime"', lambda: team(set={"run.mode": "realtime"}),
+                    mascot.ConfigError)
+        self.expect("expected agents that take actions, got none: all have laws of their own",
+                    lambda: team(set={"law": {"name": "consensus"}}), mascot.ConfigError)
+        self.expect("expected an episode with the agents, actions and layout of the first, got others",
+                    lambda: team().reset(options={"set": {"graph.topology": "ring"}}), mascot.ConfigError)
+
+    def test_a_law_in_python_is_not_flown_inside_of_python(self):
+        text = """
+[run]
+duration_s = 1.0
+[agents]
+count = 2
+position_m = [[0, 0, 1], [5, 0, 2]]
+[[agents.override]]
+id = 2
+law = { name = "custom", python = "def control(t, me, neighbours): return [0, 0]" }
+[graph]
+topology = "complete"
+"""
+        self.expect("a law in Python does not fly inside of another program in Python",
+                    lambda: mascot.parallel_env(self.write(text)), RuntimeError)
+
+
+class TwoAtOnce(TestCase):
+    def test_environments_do_not_know_of_each_other(self):
+        alone = [self.path(team(dtype="float64"), seed) for seed in (1, 2)]
+        envs = [team(dtype="float64") for _ in range(2)]
+        paths = [None, None]
+
+        def fly(k):
+            paths[k] = self.path(envs[k], k + 1)
+
+        threads = [threading.Thread(target=fly, args=(k,)) for k in range(2)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(60)
+        np.testing.assert_array_equal(paths, alone)
+
+    def path(self, env, seed):
+        env.reset(seed=seed)
+        places = []
+        while env.agents:
+            env.step({a: [1, 0.5, 0] for a in env.agents})
+            places.append(env.state())
+        return places
+
+    def test_ctrl_c_in_a_step_ends_the_step_and_the_environment_stays(self):
+        env = team()
+        env.reset()
+        with self.assertRaises(KeyboardInterrupt):
+            for _ in range(50):
+                signal.raise_signal(signal.SIGINT)
+                env.step(still(env))
+        self.assertIn("agent_1", env.reset()[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
