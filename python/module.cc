@@ -102,7 +102,9 @@ py::array_t<double> ObservationsOf(const TeamEnv& team) {
 }
 
 py::array_t<double> StateOf(const TeamEnv& team) {
-  return ArrayOf(team.state(), {team.experiment().size(), Count(TeamEnv::kStateSize)});
+  py::array_t<double> state({py::ssize_t{team.experiment().size()}, Count(TeamEnv::kStateSize)});
+  team.StateTo({state.mutable_data(), static_cast<std::size_t>(state.size())});
+  return state;
 }
 
 py::array_t<bool> LostOf(const TeamEnv& team) {
@@ -121,8 +123,8 @@ py::tuple Known(int id, const Motion& motion, double weight, std::optional<std::
   const std::array orientation{q.w(), q.x(), q.y(), q.z()};
   py::object said = py::none();
   if (message && !message->empty()) said = ArrayOf(*message, {Count(message->size())});
-  return py::make_tuple(id, Vector(motion.p_WB), Vector(motion.v_WB), Vector(motion.a_WB),
-                        ArrayOf(orientation, {4}), Vector(motion.w_WB_B), weight, said, age_s);
+  return py::make_tuple(id, Vector(motion.p_WB), Vector(motion.v_WB), Vector(motion.a_WB), ArrayOf(orientation, {4}),
+                        Vector(motion.w_WB_B), weight, said, age_s);
 }
 
 py::tuple PerceivedBy(const TeamEnv& team, int id) {
@@ -144,8 +146,7 @@ py::tuple StateOfSnapshot(const Episodes::Snapshot& snapshot) {
 
 Episodes::Snapshot SnapshotOf(const py::tuple& state) {
   Episodes::Snapshot snapshot{.changes = OverridesOf(state[0].cast<Sets>()), .tick = state[1].cast<std::int64_t>()};
-  for (const auto& [tick, agent, numbers] :
-       state[2].cast<std::vector<std::tuple<std::int64_t, int, std::size_t>>>())
+  for (const auto& [tick, agent, numbers] : state[2].cast<std::vector<std::tuple<std::int64_t, int, std::size_t>>>())
     snapshot.given.push_back({.tick = tick, .agent = agent, .numbers = numbers});
   const auto actions = state[3].cast<Doubles>();
   snapshot.actions.assign(actions.data(), actions.data() + actions.size());
@@ -161,15 +162,12 @@ void BindTeamEnv(py::module_& module) {
 
   py::class_<TeamEnv>(module, "TeamEnv")
       .def(py::init([](const std::string& path, const Sets& sets) {
-             return Compute([&] {
-               return std::make_unique<TeamEnv>(ReadInput(path), NameOfInput(path), OverridesOf(sets));
-             });
-           }))
+        return Compute(
+            [&] { return std::make_unique<TeamEnv>(ReadInput(path), NameOfInput(path), OverridesOf(sets)); });
+      }))
       .def("about", &AboutTeam)
-      .def("reset",
-           [](TeamEnv& team, std::optional<std::uint64_t> seed, const std::optional<Sets>& sets) {
-             Compute([&] { team.Reset(seed, OverridesOf(sets)); });
-           })
+      .def("reset", [](TeamEnv& team, std::optional<std::uint64_t> seed,
+                       const std::optional<Sets>& sets) { Compute([&] { team.Reset(seed, OverridesOf(sets)); }); })
       .def("step",
            [](TeamEnv& team, const Doubles& actions, const Bools& given) {
              const auto numbers = Numbers(actions, team.agents().size() * team.action_size());
@@ -177,9 +175,10 @@ void BindTeamEnv(py::module_& module) {
              Compute([&] { team.Step(numbers, which); });
            })
       .def("go_on", [](TeamEnv& team) { Compute([&] { team.Step(); }); })
-      .def("act", [](TeamEnv& team, int id, const Doubles& action) {
-        team.Act(id, {action.data(), static_cast<std::size_t>(action.size())});
-      })
+      .def("act",
+           [](TeamEnv& team, int id, const Doubles& action) {
+             team.Act(id, {action.data(), static_cast<std::size_t>(action.size())});
+           })
       .def("take", [](TeamEnv& team, const std::string& event) { Compute([&] { team.Take(event); }); })
       .def("observations", &ObservationsOf)
       .def("state", &StateOf)
@@ -194,15 +193,12 @@ void BindTeamEnv(py::module_& module) {
       .def_property_readonly("is_over", &TeamEnv::is_over)
       .def_property_readonly("is_terminated", &IsTerminated)
       .def_property_readonly("failure", &TeamEnv::failure)
-      .def("record",
-           [](TeamEnv& team, const std::optional<std::string>& out, bool force) {
-             return Compute([&] { return team.Record(out, force); });
-           })
+      .def("record", [](TeamEnv& team, const std::optional<std::string>& out,
+                        bool force) { return Compute([&] { return team.Record(out, force); }); })
       .def("finish", [](TeamEnv& team) { Compute([&] { team.Finish(); }); })
       .def("save", &TeamEnv::Save)
-      .def("restore", [](TeamEnv& team, const Episodes::Snapshot& snapshot) {
-        Compute([&] { team.Restore(snapshot); });
-      });
+      .def("restore",
+           [](TeamEnv& team, const Episodes::Snapshot& snapshot) { Compute([&] { team.Restore(snapshot); }); });
 }
 
 // --- many environments --------------------------------------------------------------------------------
@@ -270,10 +266,10 @@ void BindTeamVector(py::module_& module) {
 
   py::class_<TeamVector>(module, "TeamVector")
       .def(py::init([](const std::string& path, const Sets& sets, int count, int threads,
-                       TeamVector::Autoreset autoreset) {
+                       TeamVector::Autoreset autoreset, bool keeps_states) {
         return Compute([&] {
           return std::make_unique<TeamVector>(ReadInput(path), NameOfInput(path), OverridesOf(sets), count, threads,
-                                              autoreset);
+                                              autoreset, keeps_states);
         });
       }))
       .def("about", [](const TeamVector& vector) { return AboutTeam(vector.first()); })
@@ -298,13 +294,10 @@ void BindTeamVector(py::module_& module) {
       .def("reached_losses", &ReachedLosses)
       .def("final_observations", &FinalObservations)
       .def("failure", [](const TeamVector& vector, std::size_t env) { return vector.reached(env).failure; })
-      .def("state",
-           [](TeamVector& vector, std::size_t env) { return StateOf(vector.at(env)); })
+      .def("state", [](TeamVector& vector, std::size_t env) { return StateOf(vector.at(env)); })
       .def("seed", [](TeamVector& vector, std::size_t env) { return vector.at(env).seed(); })
-      .def("record",
-           [](TeamVector& vector, std::size_t env, const std::string& out, bool force) {
-             return Compute([&] { return vector.at(env).Record(out, force); });
-           })
+      .def("record", [](TeamVector& vector, std::size_t env, const std::string& out,
+                        bool force) { return Compute([&] { return vector.at(env).Record(out, force); }); })
       .def("finish", [](TeamVector& vector) {
         Compute([&] {
           for (std::size_t env = 0; env < vector.size(); ++env) vector.at(env).Finish();
@@ -328,7 +321,8 @@ class Policy {
     py::array_t<double> answers({rows.shape(0), outputs});
     const SameFloatingPoint same;
     for (py::ssize_t row = 0; row < rows.shape(0); ++row)
-      std::ranges::copy(network_.Answer({rows.data(row, 0), network_.inputs()}, scratch_), answers.mutable_data(row, 0));
+      std::ranges::copy(network_.Answer({rows.data(row, 0), network_.inputs()}, scratch_),
+                        answers.mutable_data(row, 0));
     return answers;
   }
 

@@ -102,13 +102,13 @@ TeamEnv::TeamEnv(std::string text, std::string path, std::vector<Override> overr
   layout_ = LayoutOf(experiment(), action_size_ - 3);
   observation_high_ = ObservationHigh(experiment(), layout_);
   observations_.resize(ids_.size() * layout_.size());
-  state_.resize(experiment().agents.size() * kStateSize);
+  agents_of_team_ = experiment().agents.size();
   Begin();
 }
 
 void TeamEnv::Begin() {
   const std::vector<int> ids = AgentsThatAct(experiment());
-  bool fits = ids == ids_ && state_.size() == experiment().agents.size() * kStateSize &&
+  bool fits = ids == ids_ && experiment().agents.size() == agents_of_team_ &&
               LayoutOf(experiment(), layout_.message) == layout_;
   for (std::size_t k = 0; fits && k < ids.size(); ++k)
     fits = experiment().agent(ids[k]).law.params->action == action_size(k);
@@ -125,8 +125,10 @@ void TeamEnv::Begin() {
 void TeamEnv::Reset(std::optional<std::uint64_t> seed, std::optional<std::vector<Override>> sets) {
   if (sets) sets_ = std::move(*sets);
   std::vector<Override> changes = sets_;
-  if (!seed && seeds_) seed = seeds_->Below(kSeeds);
-  else if (seed) seeds_.emplace(*seed, Random::Stream::kEpisodes);
+  if (!seed && seeds_)
+    seed = seeds_->Below(kSeeds);
+  else if (seed)
+    seeds_.emplace(*seed, Random::Stream::kEpisodes);
   if (seed) changes.push_back({.key = "run.seed", .value = std::to_string(*seed), .origin = "seed"});
   episodes_.Reset(std::move(changes));
   if (!seeds_) seeds_.emplace(this->seed(), Random::Stream::kEpisodes);
@@ -151,13 +153,16 @@ void TeamEnv::Look() {
     const Agent& agent = episodes_.agent(ids_[k]);
     is_lost_[k] = is_lost(k) || agent.is_lost();
     if (is_lost(k)) continue;
-    std::ranges::copy(observers_[k].Observe(agent.measured(), agent.heard()),
-                      observations_.begin() + static_cast<std::ptrdiff_t>(k * layout_.size()));
+    observers_[k].Observe(agent.measured(), agent.heard(),
+                          std::span(observations_).subspan(k * layout_.size(), layout_.size()));
   }
-  double* to = state_.data();
+}
+
+void TeamEnv::StateTo(std::span<double> to) const {
+  auto next = to.begin();
   for (const Motion& motion : episodes_.row().motions) {
     const auto put = [&](const auto& numbers, double sign) {
-      for (Eigen::Index n = 0; n < numbers.size(); ++n) *to++ = sign * numbers[n];
+      for (Eigen::Index n = 0; n < numbers.size(); ++n) *next++ = sign * numbers[n];
     };
     put(motion.p_WB, 1);
     put(motion.v_WB, 1);

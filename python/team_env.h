@@ -59,10 +59,10 @@ class TeamEnv {
   /// What the agents observe at this tick: agents() rows of layout().size(). The row of an agent that is lost is the
   /// last before that.
   std::span<const double> observations() const { return observations_; }
-  /// The true state of each agent of the team, by id - 1: p (3, m), v (3, m/s), attitude (4: x, y, z, w with w >= 0),
-  /// angular velocity in B (3, rad/s).
+  /// Writes the true state of each agent of the team, kStateSize numbers, by id - 1: p (3, m), v (3, m/s), attitude (4:
+  /// x, y, z, w with w >= 0), angular velocity in B (3, rad/s).
   static constexpr std::size_t kStateSize = 13;
-  std::span<const double> state() const { return state_; }
+  void StateTo(std::span<double> to) const;
   /// How far the team is from agreement (m), as the runs' figures have it (DisagreementOf).
   double disagreement_m() const;
   /// Whether the k-th agent is lost, or was in this episode: no agent comes back.
@@ -90,6 +90,7 @@ class TeamEnv {
 
   std::unique_ptr<EpisodeRecord> record_;
   Episodes episodes_;
+  std::size_t agents_of_team_ = 0;
   std::vector<int> ids_;
   ObservationLayout layout_;
   std::size_t action_size_ = 0;
@@ -98,7 +99,7 @@ class TeamEnv {
   std::vector<Override> sets_;
   std::optional<Random> seeds_;      // of the episodes to come; absent before the first Reset()
   std::vector<Observer> observers_;  // by index in ids_
-  std::vector<double> observations_, state_;
+  std::vector<double> observations_;
   std::vector<char> is_lost_;
 };
 

@@ -1,6 +1,7 @@
 #include "python/team_vector.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "base/same_floating_point.h"
@@ -14,17 +15,9 @@ bool IsTerminated(const TeamEnv& env) {
   return true;
 }
 
-TeamVector::TeamVector(const std::string& text, const std::string& path, const std::vector<Override>& overrides,
-                       int count, int threads, Autoreset autoreset)
-    : crew_(std::min(threads, count)),
-      autoreset_(autoreset),
-      envs_(static_cast<std::size_t>(count)),
-      reached_(envs_.size()) {
-  ForEach([&](std::size_t env) { envs_[env] = std::make_unique<TeamEnv>(text, path, overrides); });
-}
-
 /// Calls work(env) for all environments, in threads: each takes the next one when it is free.
-void TeamVector::ForEach(const std::function<void(std::size_t env)>& work) {
+template <class Work>
+void TeamVector::ForEach(const Work& work) {
   std::atomic<std::size_t> next = 0;
   crew_.Do(static_cast<std::size_t>(crew_.members()), [&](std::size_t) {
     const SameFloatingPoint same;
@@ -32,9 +25,19 @@ void TeamVector::ForEach(const std::function<void(std::size_t env)>& work) {
   });
 }
 
+TeamVector::TeamVector(const std::string& text, const std::string& path, const std::vector<Override>& overrides,
+                       int count, int threads, Autoreset autoreset, bool keeps_states)
+    : crew_(std::min(threads, count)),
+      autoreset_(autoreset),
+      keeps_states_(keeps_states),
+      envs_(static_cast<std::size_t>(count)),
+      reached_(envs_.size()) {
+  ForEach([&](std::size_t env) { envs_[env] = std::make_unique<TeamEnv>(text, path, overrides); });
+  all_given_.assign(first().agents().size(), 1);
+}
+
 void TeamVector::Reset(std::span<const std::optional<std::uint64_t>> seeds,
-                       const std::optional<std::vector<Override>>& sets, std::span<const char> mask,
-                       Observations to) {
+                       const std::optional<std::vector<Override>>& sets, std::span<const char> mask, Observations to) {
   ForEach([&](std::size_t env) {
     if (mask[env]) {
       envs_[env]->Reset(seeds[env], sets);
@@ -62,12 +65,14 @@ void TeamVector::StepOne(std::size_t env, std::span<const double> actions) {
     team.Reset({}, {});
     reached.was_reset = true;
   } else {
-    const std::vector<char> given(team.agents().size(), 1);
-    team.Step(actions, given);
+    team.Step(actions, all_given_);
     reached.terminated = IsTerminated(team);
     reached.truncated = team.is_at_end();
   }
-  reached.state.assign(team.state().begin(), team.state().end());
+  if (keeps_states_) {
+    reached.state.resize(team.experiment().agents.size() * TeamEnv::kStateSize);
+    team.StateTo(reached.state);
+  }
   reached.disagreement_m = team.disagreement_m();
   reached.failure = team.failure();
   reached.is_lost.clear();

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,9 +25,10 @@ class TeamVector {
     kDisabled   ///< never
   };
 
-  /// `count` environments, computed by `threads` threads. Throws what TeamEnv throws.
+  /// `count` environments, computed by `threads` threads. `keeps_states`: whether Reached::state is wanted. Throws what
+  /// TeamEnv throws.
   TeamVector(const std::string& text, const std::string& path, const std::vector<Override>& overrides, int count,
-             int threads, Autoreset autoreset);
+             int threads, Autoreset autoreset, bool keeps_states);
 
   std::size_t size() const { return envs_.size(); }
   /// One of them: all have the same agents, layout and bounds.
@@ -49,7 +48,7 @@ class TeamVector {
 
   /// How an environment was at the tick that the last Step() has reached, before a reset at that step.
   struct Reached {
-    std::vector<double> state = {};         ///< TeamEnv::state()
+    std::vector<double> state = {};         ///< TeamEnv::StateTo(), if it is wanted
     std::vector<double> observations = {};  ///< only if the environment was reset at this step
     std::vector<char> is_lost = {};
     bool any_is_lost = false;
@@ -62,12 +61,15 @@ class TeamVector {
   const Reached& reached(std::size_t env) const { return reached_[env]; }
 
  private:
-  void ForEach(const std::function<void(std::size_t env)>& work);
+  template <class Work>
+  void ForEach(const Work& work);
   void StepOne(std::size_t env, std::span<const double> actions);
   void Observe(std::size_t env, Observations to) const;
 
   Crew crew_;
   const Autoreset autoreset_;
+  const bool keeps_states_;
+  std::vector<char> all_given_;  // of an environment's agents: each has an action
   std::vector<std::unique_ptr<TeamEnv>> envs_;
   std::vector<Reached> reached_;
 };

@@ -111,7 +111,7 @@ class Episodes {
   std::vector<Override> overrides_;
   Crew& crew_;
   EpisodeWitness* next_witness_ = nullptr;
-  EpisodeWitness* witness_ = nullptr;  // of this episode
+  EpisodeWitness* witness_ = nullptr;             // of this episode
   std::shared_ptr<const Experiment> experiment_;  // shared while Reset() makes the next flight
   std::unique_ptr<Flight> flight_;
   std::optional<RowFeed> feed_;  // to the witness

@@ -38,9 +38,7 @@ const DecodedRow& Flight::Sense() {
   return row_;
 }
 
-std::size_t Flight::NumbersOfAction(int id) const {
-  return now().agent(id).law.params->action;
-}
+std::size_t Flight::NumbersOfAction(int id) const { return now().agent(id).law.params->action; }
 
 /// Gives laws that have begun anew the actions that hold: those before, or 0 for other laws than before.
 void Flight::HoldActions() {

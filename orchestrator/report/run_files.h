@@ -31,7 +31,7 @@ class RunFiles {
   /// Writes the tables, after Complete().
   void WriteTables(const Incidents& incidents) const;
 
-  std::size_t topics() const { return writer_.topics(); }     ///< that are recorded
+  std::size_t topics() const { return writer_.topics(); }      ///< that are recorded
   std::uint64_t samples() const { return writer_.samples(); }  ///< that were written
   /// Whether the run has moved: it has more than its start. After Complete().
   bool has_moved() const { return writer_.rows() > 1; }

@@ -69,7 +69,8 @@ class VectorEnv(_Base):
         self._in_floats = self._dtype == np.float32
         self.autoreset_mode = _mode(autoreset_mode)
         self._teams = _core.core.TeamVector(_core.path_of(file), _core.sets(set), num_envs, threads,
-                                            getattr(_core.core.Autoreset, self.autoreset_mode.name))
+                                            getattr(_core.core.Autoreset, self.autoreset_mode.name),
+                                            reward is not None)
         self._about = about = self._teams.about()
         self._reward = reward
         self._seed = seed

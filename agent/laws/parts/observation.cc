@@ -49,13 +49,13 @@ ObservationLayout LayoutOf(const Experiment& experiment, std::size_t message) {
 }
 
 Observer::Observer(const Experiment& experiment, int id, const ObservationLayout& layout)
-    : layout_(layout), row_(layout.size()) {
+    : layout_(layout) {
   for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) ids_.push_back(neighbour.id);
 }
 
-std::span<const double> Observer::Observe(const Motion& self, std::span<const Heard> heard) {
-  std::ranges::fill(row_, 0.0);
-  double* own = Put(self.v_WB, Put(self.p_WB, row_.data()));
+void Observer::Observe(const Motion& self, std::span<const Heard> heard, std::span<double> to) const {
+  std::ranges::fill(to, 0.0);
+  double* own = Put(self.v_WB, Put(self.p_WB, to.data()));
   const double sign = self.q_WB.w() < 0 ? -1 : 1;  // q and -q are the same attitude
   for (const double part : {self.q_WB.x(), self.q_WB.y(), self.q_WB.z(), self.q_WB.w()}) *own++ = sign * part;
   auto next = heard.begin();
@@ -69,7 +69,6 @@ std::span<const double> Observer::Observe(const Motion& self, std::span<const He
     std::ranges::copy(next->message.first(std::min(next->message.size(), layout_.message)), place);
     ++next;
   }
-  return row_;
 }
 
 }  // namespace mascot

@@ -45,14 +45,14 @@ ObservationLayout LayoutOf(const Experiment& experiment, std::size_t message);
 class Observer {
  public:
   Observer(const Experiment& experiment, int id, const ObservationLayout& layout);
-  /// The observation of an agent that measures `self` and has `heard` this; both are as for Law::Want_W(). Valid until
-  /// the next call.
-  std::span<const double> Observe(const Motion& self, std::span<const Heard> heard);
+  const ObservationLayout& layout() const { return layout_; }
+  /// Writes the observation of an agent that measures `self` and has `heard` this, both as for Law::Want_W(), to `to`,
+  /// which has room for ObservationLayout::size() numbers.
+  void Observe(const Motion& self, std::span<const Heard> heard, std::span<double> to) const;
 
  private:
   const ObservationLayout layout_;
   std::vector<int> ids_;  // of the agents in the places
-  std::vector<double> row_;
 };
 
 }  // namespace mascot

@@ -39,12 +39,14 @@ class Policy final : public Law {
   Policy(const Experiment& experiment, int id)
       : params_(&ParamsOf<PolicyParams>(experiment.agent(id).law)),
         observer_(experiment, id, params_->layout),
+        observation_(params_->layout.size()),
         scratch_(params_->network->MakeScratch()) {}
   Wanted wanted() const override { return params_->wanted; }
   void Adopt(const AgentConfig& agent) override { params_ = &ParamsOf<PolicyParams>(agent.law); }
 
   Eigen::Vector3d Want_W(double /*t_s*/, const Motion& self, std::span<const Heard> heard) override {
-    answer_ = params_->network->Answer(observer_.Observe(self, heard), scratch_);
+    observer_.Observe(self, heard, observation_);
+    answer_ = params_->network->Answer(observation_, scratch_);
     return {answer_[0], answer_[1], answer_[2]};
   }
   std::span<const double> Message() override { return answer_.subspan(3); }
@@ -52,6 +54,7 @@ class Policy final : public Law {
  private:
   const PolicyParams* params_;  // the experiment owns them
   Observer observer_;
+  std::vector<double> observation_;
   Network::Scratch scratch_;
   std::span<const double> answer_;
 };

@@ -30,6 +30,13 @@ std::vector<double> Part(std::span<const double> row, std::size_t first, std::si
   return {part.begin(), part.end()};
 }
 
+/// Written over another row.
+std::vector<double> Observed(const Observer& observer, const Motion& self, std::span<const Heard> heard) {
+  std::vector<double> row(observer.layout().size(), 99);
+  observer.Observe(self, heard, row);
+  return row;
+}
+
 TEST(Observation, HasPlacesForAllThatAnAgentOfTheTeamMayHear) {
   const ObservationLayout layout = LayoutOf(Star(), 2);
   EXPECT_EQ(layout.places, 2U);
@@ -48,7 +55,7 @@ TEST(Observation, IsOfItselfAndRelativeToItself) {
   const std::vector<double> message{7, 8, 9};
   const std::vector<Heard> heard{{.id = 2, .weight = 0.5, .motion = Flying({2, 4, 6}, {5, 5, 5}), .age_s = 0.25},
                                  {.id = 3, .weight = 2, .motion = Flying({0, 0, 0}, {0, 0, 0}), .message = message}};
-  const auto row = observer.Observe(self, heard);
+  const auto row = Observed(observer, self, heard);
   EXPECT_THAT(Part(row, 0, 6), ElementsAre(1, 2, 3, 4, 5, 6));
   EXPECT_THAT(Part(row, 6, 4), ElementsAre(0, 0, std::sin(std::numbers::pi / 4), std::cos(std::numbers::pi / 4)));
   EXPECT_THAT(Part(row, 10, 11), ElementsAre(1, 2, 3, 1, 0, -1, 0.5, 1, 0.25, 0, 0));
@@ -58,9 +65,8 @@ TEST(Observation, IsOfItselfAndRelativeToItself) {
 TEST(Observation, WhoIsNotHeardLeavesAnEmptyPlace) {
   const Experiment experiment = Star();
   Observer observer(experiment, 1, LayoutOf(experiment, 0));
-  observer.Observe(Flying({0, 0, 0}, {0, 0, 0}), std::vector<Heard>{{.id = 2, .weight = 1}, {.id = 3, .weight = 1}});
-  const auto row = observer.Observe(Flying({0, 0, 0}, {0, 0, 0}),
-                                    std::vector<Heard>{{.id = 3, .weight = 1, .motion = Flying({1, 1, 1}, {2, 2, 2})}});
+  const auto row = Observed(observer, Flying({0, 0, 0}, {0, 0, 0}),
+                            std::vector<Heard>{{.id = 3, .weight = 1, .motion = Flying({1, 1, 1}, {2, 2, 2})}});
   EXPECT_THAT(Part(row, 10, 9), ElementsAreArray(std::vector<double>(9, 0.0)));
   EXPECT_THAT(Part(row, 19, 9), ElementsAre(1, 1, 1, 2, 2, 2, 1, 1, 0));
 }
@@ -68,7 +74,7 @@ TEST(Observation, WhoIsNotHeardLeavesAnEmptyPlace) {
 TEST(Observation, WhoMayHearFewerHasPlacesThatStayEmpty) {
   const Experiment experiment = Star();
   Observer observer(experiment, 2, LayoutOf(experiment, 0));
-  const auto row = observer.Observe(Flying({0, 0, 0}, {0, 0, 0}), std::vector<Heard>{{.id = 3, .weight = 3}});
+  const auto row = Observed(observer, Flying({0, 0, 0}, {0, 0, 0}), std::vector<Heard>{{.id = 3, .weight = 3}});
   EXPECT_THAT(row, SizeIs(28));
   EXPECT_EQ(row[10 + 6], 3);
   EXPECT_THAT(Part(row, 19, 9), ElementsAreArray(std::vector<double>(9, 0.0)));
@@ -79,9 +85,9 @@ TEST(Observation, OneAttitudeHasOneRow) {
   Observer observer(experiment, 3, LayoutOf(experiment, 0));
   Motion self;
   self.q_WB = Eigen::AngleAxisd(3.0, Eigen::Vector3d(1, 2, 2) / 3);
-  const std::vector<double> one = Part(observer.Observe(self, {}), 6, 4);
+  const std::vector<double> one = Part(Observed(observer, self, {}), 6, 4);
   self.q_WB.coeffs() *= -1;
-  EXPECT_EQ(Part(observer.Observe(self, {}), 6, 4), one);
+  EXPECT_EQ(Part(Observed(observer, self, {}), 6, 4), one);
 }
 
 TEST(Observation, EachLayoutHasAHashOfItsOwn) {

@@ -1,10 +1,11 @@
 // Flights of one experiment, one after the other, that somebody steps.
+#include "orchestrator/engines/episodes.h"
+
 #include <gmock/gmock.h>
 
 #include <string>
 #include <vector>
 
-#include "orchestrator/engines/episodes.h"
 #include "orchestrator/engines/inprocess.h"
 #include "tests/support/recorded_with_actions.h"
 
@@ -89,7 +90,7 @@ TEST(Episodes, ThatAreRestoredAreTheSame) {
 
 TEST(Episodes, TheLawThatActionsDriveStandsInThePlaceOfTheTeams) {
   const Episodes episodes(TwoOf("name = 'flocking'\np_gain = 1\nsafety = { distance_m = 0.7 }\n"
-                               "[[agents.override]]\nid = 2\nlaw = { name = 'consensus' }\n"),
+                                "[[agents.override]]\nid = 2\nlaw = { name = 'consensus' }\n"),
                           "pair.toml", {{.key = "law.message", .value = "2"}});
   const Experiment& experiment = episodes.experiment();
   EXPECT_EQ(experiment.agent(1).law.params->action, 5u);
