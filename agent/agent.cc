@@ -158,6 +158,11 @@ void Agent::Sense(std::int64_t tick, const Motion& self, std::span<const Sample>
   if (std::exchange(is_restarted_, false)) v_integrated_W_ = measured_.v_WB;
 }
 
+Command Agent::Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
+  Sense(tick, self, samples);
+  return Decide();
+}
+
 Command Agent::Decide() {
   const Eigen::Vector3d w_W = AskLaw();
   Command command;

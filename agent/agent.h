@@ -41,11 +41,8 @@ class Agent {
   /// Evaluates the law and its limits at the tick of the last Sense(): fills in the command's accelerations, velocities
   /// and their flags. Throws std::runtime_error naming agent and tick if the law fails or its answer is not finite.
   Command Decide();
-  /// Sense(), then Decide().
-  Command Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples) {
-    Sense(tick, self, samples);
-    return Decide();
-  }
+  /// Sense(), then Decide(). A debugger may stop here (docs/replay.md): it is not inline.
+  Command Want(std::int64_t tick, const Motion& self, std::span<const Sample> samples);
   /// What the low-level stack gets for `command`, which the last Decide() returned. Valid until the next call.
   Controller::Input Driven(const Command& command) const {
     return {&measured_, driven_by_ == Wanted::kVelocity ? command.v_limited_W : command.a_limited_W};
