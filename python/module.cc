@@ -78,6 +78,7 @@ py::dict AboutTeam(const TeamEnv& team) {
   about["name"] = experiment.run.name;
   about["agents"] = experiment.size();
   about["ids"] = team.agents();
+  about["seed"] = experiment.run.seed;
   about["rate_hz"] = experiment.control.rate_hz;
   about["ticks"] = experiment.ticks();
   about["duration_s"] = experiment.run.duration_s;
@@ -140,17 +141,19 @@ py::tuple StateOfSnapshot(const Episodes::Snapshot& snapshot) {
   for (const Override& change : snapshot.changes) changes.append(py::make_tuple(change.key, change.value));
   for (const auto& one : snapshot.given) given.append(py::make_tuple(one.tick, one.agent, one.numbers));
   for (const auto& [tick, toml] : snapshot.events) events.append(py::make_tuple(tick, toml));
-  return py::make_tuple(changes, snapshot.tick, given, ArrayOf(snapshot.actions, {Count(snapshot.actions.size())}),
-                        events);
+  return py::make_tuple(snapshot.of, changes, snapshot.tick, given,
+                        ArrayOf(snapshot.actions, {Count(snapshot.actions.size())}), events);
 }
 
 Episodes::Snapshot SnapshotOf(const py::tuple& state) {
-  Episodes::Snapshot snapshot{.changes = OverridesOf(state[0].cast<Sets>()), .tick = state[1].cast<std::int64_t>()};
-  for (const auto& [tick, agent, numbers] : state[2].cast<std::vector<std::tuple<std::int64_t, int, std::size_t>>>())
+  Episodes::Snapshot snapshot{.of = state[0].cast<std::uint64_t>(),
+                              .changes = OverridesOf(state[1].cast<Sets>()),
+                              .tick = state[2].cast<std::int64_t>()};
+  for (const auto& [tick, agent, numbers] : state[3].cast<std::vector<std::tuple<std::int64_t, int, std::size_t>>>())
     snapshot.given.push_back({.tick = tick, .agent = agent, .numbers = numbers});
-  const auto actions = state[3].cast<Doubles>();
+  const auto actions = state[4].cast<Doubles>();
   snapshot.actions.assign(actions.data(), actions.data() + actions.size());
-  for (const auto& [tick, toml] : state[4].cast<std::vector<std::pair<std::int64_t, std::string>>>())
+  for (const auto& [tick, toml] : state[5].cast<std::vector<std::pair<std::int64_t, std::string>>>())
     snapshot.events.push_back({tick, toml});
   return snapshot;
 }

@@ -28,7 +28,9 @@ std::vector<int> AgentsThatAct(const Experiment& experiment) {
                                      agent.id, agent.law.name)});
     ids.push_back(agent.id);
   }
-  if (ids.empty()) throw ConfigError({"expected agents that take actions, got none: all have laws of their own"});
+  if (ids.empty())
+    throw ConfigError(
+        {"expected agents that take actions, got none: the laws of the file, and what is set, decide for all"});
   return ids;
 }
 
@@ -174,8 +176,8 @@ void TeamEnv::StateTo(std::span<double> to) const {
 double TeamEnv::disagreement_m() const { return DisagreementOf(episodes_.now(), episodes_.row().motions); }
 
 std::string TeamEnv::Record(const std::optional<std::string>& out, bool force) {
-  if (record_ != nullptr && record_->is_recording())
-    throw ConfigError({"expected one recording at a time, got another one amid an episode that is being recorded"});
+  if (record_ != nullptr && !record_->is_complete())
+    throw ConfigError({"expected one recording at a time, got another one before the episode of the last is over"});
   auto record = std::make_unique<EpisodeRecord>(out, experiment(), force);
   episodes_.SetWitness(record.get());
   record_ = std::move(record);

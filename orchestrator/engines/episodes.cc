@@ -1,10 +1,13 @@
 #include "orchestrator/engines/episodes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
 #include "agent/laws/laws.h"
+#include "base/fnv.h"
 #include "experiment/live_experiment.h"
 #include "orchestrator/engines/inprocess.h"
 
@@ -49,6 +52,9 @@ bool TakesActionsAsItIs(const std::string& text, const std::string& path, std::s
 Episodes::Episodes(std::string text, std::string path, std::vector<Override> overrides, Crew& crew)
     : text_(std::move(text)), path_(std::move(path)), overrides_(std::move(overrides)), crew_(crew) {
   if (!TakesActionsAsItIs(text_, path_, overrides_)) overrides_.insert(overrides_.begin(), DrivenLaw(text_, path_));
+  std::string all = text_;
+  for (const Override& override : overrides_) all += '\n' + override.key + " = " + override.value;
+  identity_ = Fnv1a(all);
   Reset({});
 }
 
@@ -120,6 +126,8 @@ void Episodes::End() {
 }
 
 void Episodes::Act(int id, std::span<const double> action) {
+  if (id < 1 || id > experiment_->size())
+    throw std::invalid_argument(fmt::format("expected an agent from 1 to {}, got {}", experiment_->size(), id));
   flight_->Act(id, action);
   history_.given.push_back({.tick = tick(), .agent = id, .numbers = action.size()});
   history_.actions.insert(history_.actions.end(), action.begin(), action.end());
@@ -127,7 +135,8 @@ void Episodes::Act(int id, std::span<const double> action) {
 
 void Episodes::Take(const std::string& toml) {
   constexpr const char* kByHand = "event by hand";
-  const Event event = EventFrom(std::min(tick() + 1, experiment_->ticks()), toml, experiment_->size(), kByHand);
+  if (is_over_) throw std::invalid_argument(std::string(kByHand) + ": the episode is over");
+  const Event event = EventFrom(tick() + 1, toml, experiment_->size(), kByHand);
   if (StandsElsewhere(toml))
     throw std::invalid_argument(std::string(kByHand) + ": expected keys of [[events]], got what no file has there");
   LiveExperiment live = flight_->Ahead();
@@ -160,11 +169,14 @@ void Episodes::Finish() {
 
 Episodes::Snapshot Episodes::Save() const {
   Snapshot snapshot = history_;
+  snapshot.of = identity_;
   snapshot.tick = tick();
   return snapshot;
 }
 
 void Episodes::Restore(const Snapshot& snapshot, const std::function<void()>& look) {
+  if (snapshot.of != identity_)
+    throw std::invalid_argument("expected a snapshot of the same file, with the same keys set, got one of another");
   Reset(snapshot.changes);
   look();
   auto event = snapshot.events.begin();

@@ -64,10 +64,11 @@ class Episodes {
   /// Why the episode cannot go on, in words; empty: it can, or this is its last tick.
   const std::string& failure() const { return result_.failure; }
 
-  /// What agent `id` is to do from this tick on, as Flight::Act() takes it. Throws std::invalid_argument.
+  /// What agent `id` is to do from this tick on, as Flight::Act() takes it. Throws std::invalid_argument, also if there
+  /// is no such agent.
   void Act(int id, std::span<const double> action);
   /// An event by hand at the next tick: the keys of [[events]] but at_s, as TOML ("set = {...}"). Throws ConfigError or
-  /// std::invalid_argument, and changes nothing, if it is not legal.
+  /// std::invalid_argument, and changes nothing, if it is not legal, or if the episode is over.
   void Take(const std::string& toml);
   /// Goes on to the next tick. If an agent is lost and that ends the run, the episode is over. Throws
   /// std::runtime_error if a law fails, which ends the episode, too, or if the episode is over already.
@@ -87,6 +88,7 @@ class Episodes {
       std::int64_t tick = 0;  ///< at which it took effect
       std::string toml;       ///< as Take() gets it
     };
+    std::uint64_t of = 0;  ///< stands for the experiment and its overrides: it fits no other
     std::vector<Override> changes = {};
     std::int64_t tick = 0;
     std::vector<Given> given = {};     ///< the actions, in the order in which they were given
@@ -94,8 +96,9 @@ class Episodes {
     std::vector<GivenEvent> events = {};
   };
   Snapshot Save() const;
-  /// Ends the episode, and flies that of the snapshot up to its tick. `look` is called at each tick. Throws what
-  /// Reset(), Step() and `look` throw.
+  /// Ends the episode, and flies that of the snapshot up to its tick. `look` is called at each tick. Throws
+  /// std::invalid_argument, and changes nothing, if the snapshot is of another experiment; and what Reset(), Step() and
+  /// `look` throw.
   void Restore(const Snapshot& snapshot, const std::function<void()>& look);
 
  private:
@@ -109,6 +112,7 @@ class Episodes {
 
   const std::string text_, path_;
   std::vector<Override> overrides_;
+  std::uint64_t identity_ = 0;  // Snapshot::of
   Crew& crew_;
   EpisodeWitness* next_witness_ = nullptr;
   EpisodeWitness* witness_ = nullptr;             // of this episode

@@ -23,8 +23,8 @@ class EpisodeRecord final : public EpisodeWitness {
   /// Completes the folder. Throws std::runtime_error if a file cannot be written.
   void End(const EngineResult& result) override;
   const std::filesystem::path& folder() const { return path_; }
-  /// Whether an episode is being recorded.
-  bool is_recording() const { return running_ != nullptr; }
+  /// Whether an episode was recorded: then this object passes over all others.
+  bool is_complete() const { return !folder_; }
 
  private:
   struct Running;

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import json
 import math
+import operator
 import os
 import sys
 from typing import Any, Mapping
@@ -30,7 +31,7 @@ def toml(value: Any) -> str:
     if isinstance(value, (np.ndarray, np.generic)):
         value = value.tolist()
     if isinstance(value, (bool, str)):
-        return json.dumps(value)  # TOML's strings have the same escapes
+        return _quoted(value) if isinstance(value, str) else json.dumps(value)
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
@@ -40,8 +41,25 @@ def toml(value: Any) -> str:
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(map(toml, value)) + "]"
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{json.dumps(str(key))} = {toml(item)}" for key, item in value.items()) + "}"
+        return "{" + ", ".join(f"{_quoted(str(key))} = {toml(item)}" for key, item in value.items()) + "}"
     raise TypeError(f"expected a str, bool, int, float, list or dict for an experiment file, got {type(value).__name__}")
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")  # TOML's strings have the same escapes
+
+
+def seed_of(seed: Any) -> int | None:
+    """A seed as run.seed takes it; None stays None."""
+    if seed is None:
+        return None
+    try:
+        number = operator.index(seed)
+    except TypeError:
+        raise TypeError(f"seed: expected an integer, got {seed!r}") from None
+    if not 0 <= number < 2**63:
+        raise ValueError(f"seed: expected an integer in [0, {2**63 - 1}], got {number}")
+    return number
 
 
 def sets(values: Mapping[str, Any] | None) -> list[tuple[str, str]]:

@@ -57,7 +57,7 @@ class ParallelEnv(_Base):
         self._team = _core.core.TeamEnv(_core.path_of(file), _core.sets(set))
         self._about = about = self._team.about()
         self._reward = reward
-        self._seed = seed
+        self._seed = _core.seed_of(seed)
         self.render_mode = None
         self.metadata = {"name": about["name"], "render_modes": [], "is_parallelizable": True,
                          "render_fps": about["rate_hz"]}
@@ -106,6 +106,7 @@ class ParallelEnv(_Base):
         options: {"set": {key: value}} changes keys of the file, in this and the next episodes. Others are for other
         environments: PettingZoo wants them to be passed over."""
         changes = None if not options or "set" not in options else _core.sets(options["set"])
+        seed = _core.seed_of(seed)
         first, self._seed = self._seed, None
         self._team.reset(first if seed is None else seed, changes)
         self._actions[:] = 0

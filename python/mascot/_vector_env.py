@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Mapping, Sequence
+from collections.abc import Sequence
+from typing import Any, Mapping
 
 import numpy as np
 
@@ -73,7 +74,7 @@ class VectorEnv(_Base):
                                             reward is not None)
         self._about = about = self._teams.about()
         self._reward = reward
-        self._seed = seed
+        self._seed = about["seed"] if seed is None else seed
         self.num_envs = num_envs
         self.render_mode = None
         self.spec = None
@@ -108,8 +109,9 @@ class VectorEnv(_Base):
         changes = _core.sets(options["set"]) if "set" in options else None
         if mask.dtype != bool or mask.shape != (self.num_envs,) or not mask.any():
             raise ValueError(f"reset_mask: expected {self.num_envs} bools, one of them true, got {mask}")
+        first, self._seed = self._seed, None
         if seed is None:
-            seed, self._seed = self._seed, None
+            seed = first
         observations = self._teams.reset(self._seeds(seed), changes, mask, self._in_floats)
         self._needs_reset &= ~mask
         return observations, {}
@@ -161,9 +163,9 @@ class VectorEnv(_Base):
     def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
         if seed is None:
             return [None] * self.num_envs
-        if isinstance(seed, (int, np.integer)):
-            return [int(seed) + k for k in range(self.num_envs)]
-        seeds = [None if one is None else int(one) for one in seed]
+        if not isinstance(seed, Sequence | np.ndarray):
+            return [_core.seed_of(seed) + k for k in range(self.num_envs)]
+        seeds = [_core.seed_of(one) for one in seed]
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed: expected {self.num_envs} seeds, got {len(seeds)}")
         return seeds
@@ -211,7 +213,7 @@ def vector_env(file: str | os.PathLike[str], num_envs: int = 1, threads: int | N
     file, set, dtype: as for `mascot.parallel_env()`.
     num_envs: how many copies.
     threads: how many threads compute them; None: one for each core that this process may use.
-    seed: run.seed of the first episode of the first copy; the others have the following numbers. None: the file's, for all.
+    seed: run.seed of the first episode of the first copy; the others have the following numbers. None: the file's.
     reward: a function of p (num_envs, N, 3), v (num_envs, N, 3) and the actions (num_envs, A, size) that returns num_envs numbers.
         None: minus the disagreement.
     autoreset_mode: "NextStep", "SameStep" or "Disabled", or Gymnasium's AutoresetMode.

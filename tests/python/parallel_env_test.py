@@ -317,6 +317,16 @@ class Snapshots(TestCase):
         env.restore(snapshot)
         np.testing.assert_array_equal(fly(range(20, 40)), rest)
 
+    def test_one_of_another_experiment_is_refused(self):
+        env = team()
+        env.reset()
+        env.step(still(env))
+        for other in (team(set={"law.message": 1}), mascot.parallel_env(self.write(LOST))):
+            other.reset()
+            with self.assertRaisesRegex(ValueError, "expected a snapshot of the same file, with the same keys set, got one of another"):
+                other.restore(env.snapshot())
+            other.step(still(other))
+
     def test_who_was_lost_stays_lost(self):
         env = mascot.parallel_env(self.write(LOST))
         env.reset()
@@ -347,10 +357,13 @@ class Mistakes(TestCase):
         self.expect("actions['agent_2']: expected finite numbers",
                     lambda: env.step({**actions, "agent_2": [1, float("nan"), 0]}))
         env.step(actions)  # none of these has done harm
+        self.expect("seed: expected an integer in [0, 9223372036854775807], got -1", lambda: env.reset(seed=-1))
+        self.expect("seed: expected an integer, got 'one'", lambda: env.reset(seed="one"), TypeError)
         self.expect("dtype: expected float32 or float64, got int32", lambda: team(dtype="int32"))
         self.expect("expected a str, bool, int, float, list or dict for an experiment file, got object",
                     lambda: team(set={"law.message": object()}), TypeError)
         env.close()
+        self.expect("event by hand: the episode is over", lambda: env.event(cut=[[1, 2]]))
         self.expect("actions: expected none, because no agent is left", lambda: env.step(actions))
 
     def test_those_of_the_file_have_their_place(self):
@@ -361,10 +374,16 @@ class Mistakes(TestCase):
                     lambda: mascot.parallel_env(self.write("\n[run]\nduration = 1\n")), mascot.ConfigError)
         self.expect('expected run.mode = "lockstep", got "realtime"', lambda: team(set={"run.mode": "realtime"}),
                     mascot.ConfigError)
-        self.expect("expected agents that take actions, got none: all have laws of their own",
+        self.expect("expected agents that take actions, got none: the laws of the file, and what is set, decide for all",
                     lambda: team(set={"law": {"name": "consensus"}}), mascot.ConfigError)
         self.expect("expected an episode with the agents, actions and layout of the first, got others",
                     lambda: team().reset(options={"set": {"graph.topology": "ring"}}), mascot.ConfigError)
+
+    def test_any_text_may_be_set(self):
+        for text in ("\U0001f681 \u00e9", 'a "b" \\ c', "tab\tline\nbell\x07del\x7f"):
+            with self.assertRaises(mascot.ConfigError) as caught:
+                team(set={"law.name": text})
+            self.assertNotIn("expected a TOML value", str(caught.exception))
 
     def test_a_law_in_python_is_not_flown_inside_of_python(self):
         text = """

@@ -69,7 +69,7 @@ class Records(TestCase):
         env.record("five")  # of this one: it has not moved yet
         fly_on = pushes(env, 0)
         env.step(fly_on)
-        with self.assertRaisesRegex(mascot.ConfigError, "expected one recording at a time"):
+        with self.assertRaisesRegex(mascot.ConfigError, "expected one recording at a time, got another one before the episode"):
             env.record("again")
         env.reset(seed=6)
         env.step(fly_on)

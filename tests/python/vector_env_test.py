@@ -97,6 +97,9 @@ class Rules(TestCase):
         envs.reset()
         later = envs.episode_seeds()
         self.assertEqual(len(set(later)), 3)
+        without = teams()
+        without.reset()
+        self.assertEqual(without.episode_seeds(), [1, 2, 3])
         other = teams(seed=3)
         other.reset()
         other.reset()
@@ -180,6 +183,7 @@ class Mistakes(TestCase):
             ("autoreset_mode: expected 'NextStep', 'SameStep', 'Disabled', got 'never'", lambda: teams(autoreset_mode="never")),
             ("expected a reset() of environment 0 before this step", lambda: envs.step(zeros)),
             ("seed: expected 3 seeds, got 2", lambda: envs.reset(seed=[1, 2])),
+            ("seed: expected an integer in [0, 9223372036854775807], got -1", lambda: envs.reset(seed=[1, 2, -1])),
             ("reset_mask: expected 3 bools", lambda: envs.reset(options={"reset_mask": np.zeros(3, bool)})),
             ("actions: expected the shape (3, 4, 3), got (4, 3)", lambda: envs.step(zeros[0])),
             ("actions: expected finite numbers", lambda: envs.step(zeros * np.nan)),
