@@ -132,6 +132,10 @@ void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string&
 
 void Server::Do(const TickProtocol::Actions& actions) {
   if (actions.step) world_.Step(commands_);
+  if (actions.step && restart_) {  // now it can be said whom it awaits
+    progress_is_new_ = true;
+    lifecycle_.Wake();
+  }
   if (actions.publish) Publish();
   if (actions.ask) delivery_->AskAgain();
   if (ticks_.finished()) delivery_->Finish();
@@ -333,7 +337,7 @@ void Server::ReportProgress() {
     progress.paused = ticks_.gate().paused();
     progress.pace = ticks_.gate().pace();
     progress.events = live_.count();
-    if (restart_)
+    if (restart_ && world_.tick() > ticks_.published())  // all have answered: nobody needs the processes before them
       for (const AgentRange& process : restart_->processes) progress.awaited.push_back(process.first);
   }
   lifecycle_.Report(progress);
