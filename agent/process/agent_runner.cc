@@ -20,7 +20,7 @@ AgentRunner::AgentRunner(Domain& domain, const Experiment& experiment, int id, s
       on_first_answer_(std::move(on_first_answer)),
       agent_(experiment, id),
       low_level_(experiment, {id, id}),
-      inbox_(id, PeersOf(experiment, id), experiment.run.mode == Mode::kRealtime),
+      inbox_(id, PeersOf(experiment, id), experiment.run.mode == Mode::kRealtime, experiment.agent(id).takes_actions),
       commands_(domain, Topic::Command(id)) {
   if (!experiment.agent(id).sends_messages) return;
   messages_.emplace(domain, Topic::Message(id));
@@ -49,6 +49,11 @@ void AgentRunner::OnMessage(std::size_t source, std::int64_t tick, std::span<con
   if (const auto complete = inbox_.OnMessage(source, tick, data)) Answer(*complete);
 }
 
+void AgentRunner::OnAction(std::int64_t tick, std::span<const double> action) {
+  const std::lock_guard lock(mutex_);
+  if (const auto complete = inbox_.OnAction(tick, action)) Answer(*complete);
+}
+
 void AgentRunner::TakeEvents(int events) {
   std::shared_ptr<const Experiment> now;
   for (; !events_.empty() && events_.front().first <= events; events_.pop_front())
@@ -62,6 +67,7 @@ void AgentRunner::Answer(const TickInbox::CompleteTick& complete) {
   const std::int64_t tick = complete.tick;
   TakeEvents(complete.events);
   if (agent_.is_lost()) return;
+  if (!complete.action.empty()) agent_.Act(complete.action);
   Command command = agent_.Want(tick, *complete.self, complete.samples);
   const Controller::Input driven = agent_.Driven(command);
   low_level_.Actuate({&driven, 1}, {&command, 1});

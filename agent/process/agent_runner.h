@@ -35,6 +35,7 @@ class AgentRunner {
   // their threads.
   void OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events);
   void OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
+  void OnAction(std::int64_t tick, std::span<const double> action);
   /// `now` is the experiment after the event.
   void OnEvent(int number, const Event& event, const std::shared_ptr<const Experiment>& now);
 

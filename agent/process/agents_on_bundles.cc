@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "agent/process/action_readers.h"
+
 namespace mascot {
 
 static_assert(kMaxMessage == kMaxNumbers);
@@ -17,12 +19,20 @@ AgentsOnBundles::AgentsOnBundles(Domain& domain, const Experiment& experiment, A
       commands_(driven_.size()),
       inbox_(experiment, agents),
       answers_(domain, Topic::Answers(agents), RedeliveryOfBundles(domain, experiment)),
+      actions_(ActionReaders(
+          domain, experiment, agents,
+          [this](int id, std::int64_t tick, std::span<const double> action) { OnAction(id, tick, action); })),
       bundles_(
           domain, Topic::Bundle(agents),
           [this](const RawReader::Bytes& bytes, const Sender& /*sender*/) { OnBundle(bytes); },
           RedeliveryOfBundles(domain, experiment)) {
   const std::lock_guard lock(mutex_);
   for (int id = agents.first; id <= agents.last; ++id) agents_.push_back(std::make_unique<Agent>(experiment, id));
+}
+
+bool AgentsOnBundles::Matched() const {
+  return bundles_.matched() >= 1 && answers_.matched() >= 1 &&
+         std::ranges::all_of(actions_, [](const auto& reader) { return reader->matched() >= 1; });
 }
 
 void AgentsOnBundles::OnBundle(const RawReader::Bytes& bytes) {
@@ -44,6 +54,11 @@ void AgentsOnBundles::OnEvent(int number, const Event& event, const std::shared_
   if (inbox_.OnEvent(number, event)) Answer();
 }
 
+void AgentsOnBundles::OnAction(int id, std::int64_t tick, std::span<const double> action) {
+  const std::lock_guard lock(mutex_);
+  if (inbox_.OnAction(id, tick, action)) Answer();
+}
+
 void AgentsOnBundles::TakeEvents(int events) {
   std::shared_ptr<const Experiment> now;
   for (; !events_.empty() && events_.front().first <= events; events_.pop_front())
@@ -61,7 +76,10 @@ void AgentsOnBundles::Answer() {
   if (std::ranges::all_of(agents_, [](const auto& agent) { return agent->is_lost(); })) return;
   for (std::size_t i = 0; i < agents_.size(); ++i) {
     const int id = agents_[i]->id();
-    if (!agents_[i]->is_lost()) commands_[i] = agents_[i]->Want(tick, inbox_.MotionOf(id), inbox_.SamplesOf(id));
+    if (!agents_[i]->is_lost()) {
+      if (const auto action = inbox_.ActionOf(id); !action.empty()) agents_[i]->Act(action);
+      commands_[i] = agents_[i]->Want(tick, inbox_.MotionOf(id), inbox_.SamplesOf(id));
+    }
     driven_[i] = agents_[i]->Driven(commands_[i]);
   }
   low_level_.Actuate(driven_, commands_);

@@ -18,19 +18,20 @@
 namespace mascot {
 
 /// network.delivery = "bundled": one sample brings all that the agents of this process may hear at a tick, and one
-/// takes all their answers back.
+/// takes all their answers back. Actions, which do not come from the physics server, come by themselves.
 class AgentsOnBundles final : public AgentsOnWire {
  public:
   /// `on_first_answer` is called once, in the thread that answers first.
   AgentsOnBundles(Domain& domain, const Experiment& experiment, AgentRange agents,
                   std::function<void()> on_first_answer);
 
-  bool Matched() const override { return bundles_.matched() >= 1 && answers_.matched() >= 1; }
+  bool Matched() const override;
   bool HaveAnswered() const override { return has_answered_; }
   void OnEvent(int number, const Event& event, const std::shared_ptr<const Experiment>& now) override;
 
  private:
   void OnBundle(const RawReader::Bytes& bytes);
+  void OnAction(int id, std::int64_t tick, std::span<const double> action);
   // The functions below are called with mutex_ held.
   /// Lets the agents adopt what the first `events` events have made of the experiment.
   void TakeEvents(int events);
@@ -51,7 +52,8 @@ class AgentsOnBundles final : public AgentsOnWire {
   std::atomic<bool> has_answered_ = false;
 
   RawWriter answers_;
-  RawReader bundles_;  // last: it calls the members above
+  std::vector<std::unique_ptr<ReaderBase>> actions_;  // these two last: they call the members above
+  RawReader bundles_;
 };
 
 }  // namespace mascot

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "agent/process/action_readers.h"
+
 namespace mascot {
 
 AgentsOnTopics::AgentsOnTopics(Domain& domain, const Experiment& experiment, AgentRange agents,
@@ -12,6 +14,7 @@ AgentsOnTopics::AgentsOnTopics(Domain& domain, const Experiment& experiment, Age
     runners_.push_back(std::make_unique<AgentRunner>(domain, experiment, id, on_first_answer));
   ListenToStates(domain);
   ListenToMessages(domain);
+  ListenToActions(domain, agents);
 }
 
 std::map<int, std::vector<AgentsOnTopics::Listener>> AgentsOnTopics::Listeners(bool own) const {
@@ -49,6 +52,14 @@ void AgentsOnTopics::ListenToMessages(Domain& domain) {
           for (const Listener& listener : listeners) listener.runner->OnMessage(listener.source, tick, data);
         }));
   }
+}
+
+void AgentsOnTopics::ListenToActions(Domain& domain, AgentRange agents) {
+  for (auto& reader : ActionReaders(domain, experiment_, agents,
+                                    [this, agents](int id, std::int64_t tick, std::span<const double> action) {
+                                      runners_[static_cast<std::size_t>(id - agents.first)]->OnAction(tick, action);
+                                    }))
+    readers_.push_back(std::move(reader));
 }
 
 void AgentsOnTopics::OnEvent(int number, const Event& event, const std::shared_ptr<const Experiment>& now) {

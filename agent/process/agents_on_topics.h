@@ -31,6 +31,7 @@ class AgentsOnTopics final : public AgentsOnWire {
 
   void ListenToStates(Domain& domain);
   void ListenToMessages(Domain& domain);
+  void ListenToActions(Domain& domain, AgentRange agents);
   /// For each agent, by id, the runners that listen to it. With `own`, an agent's runner listens to the agent itself,
   /// too.
   std::map<int, std::vector<Listener>> Listeners(bool own) const;

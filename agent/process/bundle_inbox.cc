@@ -17,10 +17,12 @@ BundleInbox::BundleInbox(const Experiment& experiment, AgentRange agents)
       realtime_(experiment.run.mode == Mode::kRealtime),
       sources_(SourcesOf(experiment, agents)),
       motions_(sources_.size()),
-      messages_(sources_.size()) {
+      messages_(sources_.size()),
+      actions_(static_cast<std::size_t>(agents.size())) {
   for (std::size_t k = 0; k < sources_.size(); ++k) index_[sources_[k]] = k;
   std::vector<bool> is_heard(sources_.size());
   for (int id = agents.first; id <= agents.last; ++id) {
+    if (experiment.agent(id).takes_actions) takers_.push_back(id);
     std::vector<std::size_t>& heard = heard_.emplace_back();
     for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) heard.push_back(index_.at(neighbour.id));
     for (const std::size_t k : heard) is_heard[k] = true;
@@ -97,6 +99,29 @@ void BundleInbox::RequireAllMessages(std::int64_t tick, std::span<const std::spa
 bool BundleInbox::OnEvent(int number, const Event& event) {
   known_events_ = number;
   silences_.Take(event);
+  return IsCompleteNow();
+}
+
+bool BundleInbox::OnAction(int id, std::int64_t tick, std::span<const double> action) {
+  Message& newest = actions_[static_cast<std::size_t>(id - agents_.first)];
+  if (tick <= newest.tick) return false;
+  newest.tick = tick;
+  newest.data.assign(action.begin(), action.end());
+  return IsCompleteNow();
+}
+
+std::span<const double> BundleInbox::ActionOf(int id) const {
+  const Message& newest = actions_[static_cast<std::size_t>(id - agents_.first)];
+  return newest.tick == tick_ ? std::span<const double>(newest.data) : std::span<const double>();
+}
+
+bool BundleInbox::IsComplete() const {
+  return tick_ > answered_ && events_ <= known_events_ && std::ranges::all_of(takers_, [this](int id) {
+           return actions_[static_cast<std::size_t>(id - agents_.first)].tick == tick_ || silences_.Has(id, tick_);
+         });
+}
+
+bool BundleInbox::IsCompleteNow() const {
   if (!IsComplete()) return false;
   for (const int sender : senders_) RequireMessageOf(sender, tick_, messages_[index_.at(sender)].tick == tick_ - 1);
   return true;

@@ -7,8 +7,8 @@
 
 namespace mascot {
 
-TickInbox::TickInbox(int id, const std::vector<Peer>& peers, bool realtime)
-    : realtime_(realtime), samples_(peers.size()) {
+TickInbox::TickInbox(int id, const std::vector<Peer>& peers, bool realtime, bool takes_actions)
+    : realtime_(realtime), takes_actions_(takes_actions), samples_(peers.size()) {
   sources_.push_back({.agent = {.id = id}});
   for (const Peer& peer : peers) sources_.push_back({.agent = peer});
 }
@@ -25,6 +25,13 @@ std::optional<TickInbox::CompleteTick> TickInbox::OnMessage(std::size_t source, 
   if (tick <= place.tick) return std::nullopt;
   place.tick = tick;
   place.data.assign(data.begin(), data.end());
+  return TakeIfComplete();
+}
+
+std::optional<TickInbox::CompleteTick> TickInbox::OnAction(std::int64_t tick, std::span<const double> action) {
+  if (tick <= action_.tick) return std::nullopt;
+  action_.tick = tick;
+  action_.data.assign(action.begin(), action.end());
   return TakeIfComplete();
 }
 
@@ -64,9 +71,15 @@ std::optional<TickInbox::CompleteTick> TickInbox::TakeIfComplete() {
   if (tick <= answered_ || events > events_) return std::nullopt;
   if (!std::ranges::all_of(sources_, [&](const Source& source) { return IsComplete(source, tick); }))
     return std::nullopt;
+  if (takes_actions_ && action_.tick != tick && !silences_.Has(sources_.front().agent.id, tick)) return std::nullopt;
   answered_ = tick;
   for (std::size_t k = 0; k < samples_.size(); ++k) samples_[k] = SampleAt(sources_[k + 1], tick);
-  return CompleteTick{.tick = tick, .self = &sources_.front().motion, .samples = samples_, .events = events};
+  return CompleteTick{
+      .tick = tick,
+      .self = &sources_.front().motion,
+      .samples = samples_,
+      .events = events,
+      .action = action_.tick == tick ? std::span<const double>(action_.data) : std::span<const double>()};
 }
 
 }  // namespace mascot

@@ -14,9 +14,9 @@ namespace mascot {
 
 /// Collects the samples that arrive for one agent, and tells which ticks it can answer. Tick k is complete when the
 /// agent's own state and those of its peers have arrived, all of tick k, the events up to it, and in lockstep also the
-/// messages that its peers, unless they were lost, sent with their answers to tick k-1. Each tick is complete once. In
-/// real time messages may be missing, and a tick that is overtaken by the next one never becomes complete: the server
-/// holds the agent's last command.
+/// messages that its peers, unless they were lost, sent with their answers to tick k-1. An agent that takes actions
+/// needs that of tick k as well, unless it is lost. Each tick is complete once. In real time messages may be missing,
+/// and a tick that is overtaken by the next one never becomes complete: the server holds the agent's last command.
 ///
 /// No law, DDS, clock or lock: the caller passes in what arrives.
 class TickInbox {
@@ -33,20 +33,24 @@ class TickInbox {
     const Motion* self = nullptr;
     /// One for each peer, in order, with the peer's last message before this tick.
     std::span<const Sample> samples = {};
-    int events = 0;  ///< how many events have taken effect up to this tick
+    int events = 0;                       ///< how many events have taken effect up to this tick
+    std::span<const double> action = {};  ///< of this tick; empty: none has come, or its law takes none
   };
 
-  TickInbox(int id, const std::vector<Peer>& peers, bool realtime);
+  TickInbox(int id, const std::vector<Peer>& peers, bool realtime, bool takes_actions = false);
 
   // Each takes what arrives and returns the tick that becomes complete with it, if any. `source`: 0 is the agent
   // itself, then its peers in order. A sample that is late, doubled or of a negative tick is ignored.
   std::optional<CompleteTick> OnState(std::size_t source, std::int64_t tick, const Motion& motion, int events = 0);
   std::optional<CompleteTick> OnMessage(std::size_t source, std::int64_t tick, std::span<const double> data);
+  /// What somebody outside wants of the agent.
+  std::optional<CompleteTick> OnAction(std::int64_t tick, std::span<const double> action);
   /// The next event, whose number this is.
   std::optional<CompleteTick> OnEvent(int number, const Event& event);
 
  private:
-  /// A message and the tick that its sender answered with it; -1 and empty: no message has arrived.
+  /// A message and the tick that its sender answered with it, or an action and its tick; -1 and empty: none has
+  /// arrived.
   struct Message {
     std::int64_t tick = -1;
     std::vector<double> data;
@@ -69,9 +73,10 @@ class TickInbox {
   /// The motion of `source`, and the last message that it sent before `tick`; empty: it sent none.
   static Sample SampleAt(const Source& source, std::int64_t tick);
 
-  const bool realtime_;
+  const bool realtime_, takes_actions_;
   std::vector<Source> sources_;  // the agent itself, then its peers
   std::vector<Sample> samples_;  // CompleteTick::samples
+  Message action_;               // the newest
   std::int64_t answered_ = -1;   // the last tick that was complete
   int events_ = 0;               // number of the last event that has arrived
   Silences silences_;

@@ -19,7 +19,7 @@ Flight::Flight(const Experiment& experiment, Crew& crew, Tell tell)
       world_(experiment, World::LookForContacts::kWhenClose, World::kAllLanes, crew),
       team_(experiment, crew),
       actuation_(static_cast<std::size_t>(experiment.size())),
-      actions_(static_cast<std::size_t>(experiment.size())),
+      actions_(experiment),
       row_(experiment.size()) {
   HoldActions();
 }
@@ -38,25 +38,16 @@ const DecodedRow& Flight::Sense() {
   return row_;
 }
 
-std::size_t Flight::NumbersOfAction(int id) const { return now().agent(id).law.params->action; }
-
-/// Gives laws that have begun anew the actions that hold: those before, or 0 for other laws than before.
+/// Gives laws that have begun anew the actions that hold.
 void Flight::HoldActions() {
-  for (const AgentConfig& agent : experiment_.agents) {
-    if (!agent.takes_actions) continue;
-    std::vector<double>& action = actions_[static_cast<std::size_t>(agent.id - 1)];
-    if (const std::size_t numbers = NumbersOfAction(agent.id); action.size() != numbers) action.assign(numbers, 0);
-    team_.Act(agent.id, action);
-  }
+  actions_.Adopt(now());
+  for (const AgentConfig& agent : experiment_.agents)
+    if (agent.takes_actions) team_.Act(agent.id, actions_.Of(agent.id));
 }
 
 void Flight::Act(int id, std::span<const double> action) {
-  const std::size_t expected = NumbersOfAction(id);
-  if (action.size() != expected)
-    throw std::invalid_argument(
-        fmt::format("agent {}: expected an action of {} numbers, got {}", id, expected, action.size()));
+  actions_.Act(id, action);
   team_.Act(id, action);
-  actions_[static_cast<std::size_t>(id - 1)].assign(action.begin(), action.end());
 }
 
 const DecodedRow& Flight::Exchange() {
@@ -76,7 +67,7 @@ const DecodedRow& Flight::Exchange() {
     actuation_[i] = row_.commands[i].actuator;
     const std::span<const double> message = team_.message(agent.id);
     row_.messages[i].assign(message.begin(), message.end());
-    row_.actions[i] = actions_[i];
+    row_.actions[i] = actions_.Of(agent.id);
   }
   return row_;
 }

@@ -12,6 +12,7 @@
 #include "base/crew.h"
 #include "experiment/experiment.h"
 #include "experiment/live_experiment.h"
+#include "orchestrator/engines/held_actions.h"
 #include "orchestrator/team/row.h"
 #include "orchestrator/team/team.h"
 #include "physics_server/world.h"
@@ -76,7 +77,6 @@ class Flight {
   LiveExperiment& Live();
   std::span<const int> SilentAt(std::int64_t tick);
   void Begin();
-  std::size_t NumbersOfAction(int id) const;
   void HoldActions();
   void LoseThoseThatFailed(std::int64_t tick);
   void Lose(int id, std::int64_t tick);
@@ -98,7 +98,7 @@ class Flight {
   bool has_begun_ = false;  // Begin() at this tick
   std::vector<int> silent_;
   std::vector<Actuation> actuation_;
-  std::vector<std::vector<double>> actions_;  // that hold, by id - 1
+  HeldActions actions_;
   DecodedRow row_;
 };
 

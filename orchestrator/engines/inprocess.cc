@@ -96,12 +96,9 @@ class Steering {
   TickGate gate_;
 };
 
-void ActBy(ActionSource& actions, const Experiment& experiment, Flight& flight) {
+void ActBy(ActionSource& actions, Flight& flight) {
   flight.Sense();
-  const std::span<const std::vector<double>> now = actions.At(flight.tick());
-  for (int id = 1; id <= experiment.size(); ++id)
-    if (const std::vector<double>& action = now[static_cast<std::size_t>(id - 1)]; !action.empty())
-      flight.Act(id, action);
+  ForEachAction(actions, flight.tick(), [&](int id, std::span<const double> action) { flight.Act(id, action); });
 }
 
 }  // namespace
@@ -127,7 +124,7 @@ EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSin
     RowFeed feed(experiment, sinks);
     start = WallClock::now();
     for (std::int64_t tick = 0; steering ? steering->Await(tick, go_on) : go_on(); ++tick) {
-      if (actions != nullptr) ActBy(*actions, experiment, *flight);
+      if (actions != nullptr) ActBy(*actions, *flight);
       feed.Add(tick, flight->Exchange());
       if (tick == experiment.ticks()) break;
       flight->Step();

@@ -34,11 +34,6 @@ RecordedLife::RecordedLife(const std::string& file, const McapContents& contents
         {fmt::format("{}: expected a recording of every tick, which the agent answers, got one of every "
                      "{} ticks (record.rate_hz)",
                      file, plan.ticks_per_row)});
-  if (experiment.agent(agent).takes_actions)
-    throw ConfigError(
-        {fmt::format("{}: expected an agent whose law decides by itself, got agent {}, which takes "
-                     "actions: verify flies its run again",
-                     file, agent)});
   for (const int id : sources_)
     Require(Topic::State(id), id == agent ? "which is its own" : fmt::format("which agent {} hears", agent));
   for (const int id : sources_)
@@ -49,6 +44,7 @@ RecordedLife::RecordedLife(const std::string& file, const McapContents& contents
                      "\"realtime\": nobody has recorded when they reached agent {}",
                      file, agent)});
   for (const int id : senders_) Require(Topic::Message(id), fmt::format("which agent {} hears", agent));
+  if (experiment.agent(agent).takes_actions) Require(Topic::Action(agent), "which says what it was to do");
   Require(Topic::Command(agent), "with which its answers are compared");
   if (!experiment.events.empty()) Require(Topic::Event(), "which changes the run");
   has_messages_ = experiment.agent(agent).sends_messages &&
@@ -91,6 +87,8 @@ std::string RecordedLife::Missing(const Tick& tick) const {
   for (const int id : sources_)
     if (row.states[static_cast<std::size_t>(id - 1)].empty()) return Topic::State(id).Name();
   if (!tick.answers) return plan_.realtime ? "" : Topic::Command(agent_).Name();
+  if (experiment_.agent(agent_).takes_actions && row.actions[static_cast<std::size_t>(agent_ - 1)].empty())
+    return Topic::Action(agent_).Name();
   for (const int id : senders_)
     if (row.tick > 0 && messages_[static_cast<std::size_t>(id - 1)].empty() && !silences_.Has(id, row.tick - 1))
       return Topic::Message(id).Name() + " of the tick before";

@@ -33,8 +33,6 @@ void EngineArgs::Refuse(const Experiment& experiment, bool gives_actions) const 
   if (threads && name != kInProcess) throw ConfigError({"--threads: expected --engine inprocess with it"});
   if (threads && (*threads < 1 || *threads > kMaxThreads))
     throw ConfigError({fmt::format("--threads: expected 1 to {}, got {}", kMaxThreads, *threads)});
-  if (name == kOverDds && gives_actions && TakesActions(experiment))
-    throw ConfigError({"--engine dds: expected laws that take no actions, which are given in one process alone"});
   if (name == kOverDds) return RefuseTooManyProcesses(experiment);
   RefuseInProcess(experiment, "--engine inprocess");
 }
@@ -57,7 +55,7 @@ EngineRun::EngineRun(const std::string& engine, const Experiment& experiment, co
       crew_(crew),
       actions_(actions) {
   if (engine == kOverDds)
-    dds_.emplace(experiment, folder, sinks, requests, console, stop, ros);
+    dds_.emplace(experiment, folder, sinks, requests, console, stop, ros, actions);
   else if (FliesCodeOfUsers(experiment))
     janitor_.emplace();
 }

@@ -52,6 +52,9 @@ TEST(MayWrite, GivesEachTopicToWhoItIsOf) {
   EXPECT_FALSE(MayWrite("physics_server", Topic::Message(3)));
   EXPECT_TRUE(MayWrite("orchestrator", Topic::Experiment()));
   EXPECT_FALSE(MayWrite("physics_server", Topic::Experiment()));
+  EXPECT_TRUE(MayWrite("orchestrator", Topic::Action(3)));
+  EXPECT_FALSE(MayWrite("agent_3", Topic::Action(3)));
+  EXPECT_FALSE(MayWrite("physics_server", Topic::Action(3)));
   EXPECT_TRUE(MayWrite("agent_1", Topic::Status()));
   EXPECT_TRUE(MayWrite("orchestrator", Topic::Request()));
   EXPECT_FALSE(MayWrite("agent_1", Topic::Request()));
@@ -77,6 +80,12 @@ TEST_F(PeersTest, AProcessThatWasStartedIsKnownByItsIdUnderWhateverName) {
 TEST_F(PeersTest, ANameAloneDoesNotMakeAProcessThatWasStarted) {
   EXPECT_EQ(peers_.Claim(ParticipantOf(1, 999), "agent_1"), "");
   EXPECT_EQ(peers_.Believe(Topic::Command(1), ParticipantOf(1, 999)), "");
+}
+
+TEST_F(PeersTest, OnlyTheOrchestratorTellsAgentsWhatToDo) {
+  peers_.Know("orchestrator", ProcessKey::Of(ParticipantOf(1, 99)));
+  EXPECT_EQ(peers_.Believe(Topic::Action(1), ParticipantOf(1, 99)), "orchestrator");
+  for (const int other : {100, 101, 999}) EXPECT_EQ(peers_.Believe(Topic::Action(1), ParticipantOf(1, other)), "");
 }
 
 TEST_F(PeersTest, OnceAProcessHasShownUpItIsKnownByItsHostToo) {

@@ -118,6 +118,8 @@ std::vector<Lie> Lies() {
        "'rviz' writes /agent_1/bundle, which only physics_server may (process "},
       {"a bundle under the name of the server", "physics_server", Write<BundleType>(Topic::Bundle({1, 1}), {}),
        server_twice},
+      {"an action", "rviz", Write<ActionType>(Topic::Action(1), {}),
+       "'rviz' writes /agent_1/action, which only orchestrator may (process "},
       {"a row", "rviz", Write<RowType>(Topic::Row(), {}),
        "'rviz' writes /row, which only physics_server may (process "},
       {"a state of the largest tick in real time", "physics_server",

@@ -1,8 +1,11 @@
 // Somebody outside decides: whoever steps the run (orchestrator/engines/flight.h) gives each agent an action at each
 // tick, which is what the agent wants, and the message that it sends.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "agent/laws/parts/row_parts.h"
@@ -29,7 +32,11 @@ class Actions final : public Law {
       : wanted_(ParamsOf<ActionsParams>(agent.law).wanted), action_(agent.law.params->action) {}
 
   Wanted wanted() const override { return wanted_; }
-  void Act(std::span<const double> action) override { std::ranges::copy(action, action_.begin()); }
+  void Act(std::span<const double> action) override {
+    if (action.size() != action_.size())
+      throw std::runtime_error(fmt::format("expected an action of {} numbers, got {}", action_.size(), action.size()));
+    std::ranges::copy(action, action_.begin());
+  }
   Eigen::Vector3d Want_W(double /*t_s*/, const Motion& /*self*/, std::span<const Heard> /*heard*/) override {
     return {action_[0], action_[1], action_[2]};
   }

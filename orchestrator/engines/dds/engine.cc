@@ -24,6 +24,7 @@
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
 #include "experiment/processes.h"
+#include "orchestrator/engines/dds/action_sender.h"
 #include "orchestrator/engines/dds/bounded_call.h"
 #include "orchestrator/engines/dds/credentials.h"
 #include "orchestrator/engines/dds/delivery.h"
@@ -81,7 +82,7 @@ void LowerPriority() {
 class DdsRun {
  public:
   DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-         RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros);
+         RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros, ActionSource* actions);
   void LeaveIfKilled(const std::string& path, const std::string& text) { last_words_ = {path, text}; }
   EngineResult Fly();
   bool End();
@@ -141,6 +142,7 @@ class DdsRun {
   Console& console_;
   StopSignal& stop_;
   RosSource* const ros_;
+  ActionSource* const action_source_;  // may be null
   const WallClock::time_point launched_ = WallClock::now();
   WallClock::time_point next_reminder_ = launched_ + BetweenReminders();
   std::vector<std::pair<AgentRange, std::string>> losses_;  // of which no event tells yet: agents, and what happened
@@ -193,17 +195,19 @@ class DdsRun {
   std::optional<RunLinks> links_;
   RowFeed feed_;
   std::optional<Recorder> recorder_;
+  std::optional<ActionSender> actions_;  // if agents take some
   std::optional<RosPublisher> ros_publisher_;
   RunPhases phases_;
 };
 
 DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-               RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros)
+               RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros, ActionSource* actions)
     : experiment_(experiment),
       run_requests_(requests),
       console_(console),
       stop_(stop),
       ros_(ros),
+      action_source_(actions),
       external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
       reaches_others_(external_ || !std::ranges::all_of(experiment.hosts, &HostConfig::is_here)),
       processes_(AgentProcesses(experiment)),
@@ -273,6 +277,7 @@ void DdsRun::Join() {
                  LogFile(folder_.Log("orchestrator"), [this](const std::string& words) { console_.Warning(words); }),
                  wake);
   recorder_.emplace(*domain_, experiment_, feed_);
+  if (TakesActions(experiment_)) actions_.emplace(*domain_, experiment_, *recorder_, action_source_);
   if (ros_ != nullptr) ShowToRos();
 }
 
@@ -729,13 +734,15 @@ void DdsRun::CheckWire() {
   if (const std::string violation = audit_.Violation(); !violation.empty()) phases_.OnViolation(violation);
 }
 
-/// Records the complete rows and confirms them to the server. Returns the state of the run afterwards.
+/// Records the complete rows and confirms them to the server; then agents get their actions. Returns the state of the
+/// run afterwards.
 RunPhases::View DdsRun::Record() {
   const auto server = links_->StatusOf(kPhysicsServer);  // before draining: all samples up to its tick have been sent
   const bool done = server && static_cast<Life>(server->state()) == Life::kDone;
   if (done) recorder_->Settle();
   const bool give_up = phases_.gives_up(WallClock::now());
   const std::int64_t rows = recorder_->Drain(give_up);
+  if (actions_) actions_->Send(rows);
   if (rows > confirmed_) links_->Confirm(rows);
   confirmed_ = rows;
   RunPhases::View view = Look();
@@ -746,7 +753,8 @@ RunPhases::View DdsRun::Record() {
 
 RunPhases::View DdsRun::Look() const {
   const bool starting = phases_.phase() == RunPhases::Phase::kStarting;
-  return {.everybody_found = starting && recorder_->Matched() && audit_.IsComplete() && links_->HaveTheExperiment(),
+  return {.everybody_found = starting && recorder_->Matched() && (!actions_ || actions_->Matched()) &&
+                             audit_.IsComplete() && links_->HaveTheExperiment(),
           .newest_tick = recorder_->newest_tick(),
           .rows = confirmed_,
           .last_tick = {},
@@ -874,6 +882,7 @@ void DdsRun::LeaveDomain() {
   while (external_ && links_ && links_->listeners() > 0 && WallClock::now() < deadline)
     std::this_thread::sleep_for(20ms);
   ros_publisher_.reset();
+  actions_.reset();
   recorder_.reset();
   links_.reset();
   domain_.reset();
@@ -881,8 +890,8 @@ void DdsRun::LeaveDomain() {
 }
 
 DdsEngine::DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-                     RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros)
-    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, requests, console, stop, ros)) {}
+                     RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros, ActionSource* actions)
+    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, requests, console, stop, ros, actions)) {}
 
 DdsEngine::~DdsEngine() { End(); }
 

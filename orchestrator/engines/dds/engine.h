@@ -8,6 +8,7 @@
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/engines/ros_source.h"
 #include "orchestrator/recording/run_folder.h"
+#include "orchestrator/team/action_source.h"
 #include "orchestrator/team/row_sink.h"
 #include "system/console.h"
 #include "system/stop_signal.h"
@@ -18,11 +19,13 @@ class DdsRun;
 
 /// Runs an experiment as separate processes in a DDS domain of its own: a physics server and the agent processes. It
 /// waits for external agents, and does not start them. The calling process records: `sinks` get every row, in tick
-/// order. People steer the run by `requests`; null: they cannot. `ros`, if given, is published for RViz2.
+/// order. People steer the run by `requests`; null: they cannot. `ros`, if given, is published for RViz2. `actions`:
+/// what agents do whose laws take actions; null: they are given 0.
 class DdsEngine {
  public:
   DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-            RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros = nullptr);
+            RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros = nullptr,
+            ActionSource* actions = nullptr);
   ~DdsEngine();  ///< calls End()
   DdsEngine(const DdsEngine&) = delete;
   DdsEngine& operator=(const DdsEngine&) = delete;

@@ -99,6 +99,7 @@ void Player::Join() {
       LogFile(logs_folder_.path() / "orchestrator.log", [this](const std::string& words) { console_.Warning(words); }),
       [this] { stop_.Wake(); });
   events_.emplace(*domain_, Topic::Event());
+  if (experiment_.agent(agent_).takes_actions) actions_.emplace(*domain_, Topic::Action(agent_));
 }
 
 void Player::Connect() {
@@ -212,7 +213,7 @@ void Player::Spawn(std::int64_t tick) {
 bool Player::IsReady(std::int64_t tick) const {
   const auto status = links_->StatusOf(process_);
   return status && std::cmp_equal(status->from_tick(), tick) && static_cast<Life>(status->state()) == Life::kReady &&
-         events_->HasReaderOf(process_) && delivery_->Matched();
+         events_->HasReaderOf(process_) && (!actions_ || actions_->HasReaderOf(process_)) && delivery_->Matched();
 }
 
 void Player::AwaitReady(std::int64_t tick) {
@@ -237,10 +238,14 @@ void Player::PlayEvents(const Row& row) {
 
 void Player::PlayTick(const RecordedLife::Tick& tick) {
   hears_ = true;
+  const auto at = static_cast<std::size_t>(agent_ - 1);
+  if (actions_) {
+    Row::Bytes action = tick.row->actions[at];
+    actions_->Write(action);
+  }
   delivery_->Publish(*tick.row, *tick.messages);
   Await(tick_);
   if (result_.signal != 0) return;
-  const auto at = static_cast<std::size_t>(agent_ - 1);
   ReplayDelivery::Answer answer;
   {
     const std::lock_guard lock(mutex_);
@@ -333,6 +338,7 @@ bool Player::End() {
     let_go_ = own_domain_->Leave(
         [this] {
           delivery_.reset();
+          actions_.reset();
           events_.reset();
           links_.reset();
           domain_.reset();

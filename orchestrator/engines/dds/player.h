@@ -26,8 +26,8 @@
 namespace mascot {
 
 /// Lets the process of one agent, the real program, live through a recording, over DDS as in its run: it gets the
-/// recorded states, messages and events, tick by tick, and its answers are compared with those recorded. The next tick
-/// comes once it has answered. For the agent, one participant stands for all other processes of the run.
+/// recorded states, messages, events and actions, tick by tick, and its answers are compared with those recorded. The
+/// next tick comes once it has answered. For the agent, one participant stands for all other processes of the run.
 ///
 /// An agent that was lost has no process until it starts afresh; then it is a fresh one, from that tick on.
 class Player {
@@ -118,6 +118,7 @@ class Player {
   std::optional<Domain> domain_;
   std::optional<RunLinks> links_;
   std::optional<RawWriter> events_;
+  std::optional<RawWriter> actions_;  // if the agent takes some
   std::unique_ptr<ReplayDelivery> delivery_;
   bool ended_ = false, let_go_ = true;
 };

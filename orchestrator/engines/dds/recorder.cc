@@ -51,6 +51,7 @@ RowWindow::Rules WindowRules(const Experiment& experiment) {
     rules.topics.push_back(Topic::State(agent.id));
     rules.topics.push_back(Topic::Command(agent.id));
     if (agent.sends_messages) rules.topics.push_back(Topic::Message(agent.id));
+    if (agent.takes_actions) rules.topics.push_back(Topic::Action(agent.id));
   }
   return rules;
 }
@@ -63,6 +64,11 @@ Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed)
       feed_(feed),
       window_(WindowRules(experiment)),
       taken_(experiment.size()) {
+  for (std::vector<std::size_t>* indices : {&states_, &commands_, &messages_, &actions_})
+    indices->resize(experiment.agents.size());
+  for (std::size_t index = 0; index < window_.topics().size(); ++index)
+    if (const Topic& topic = window_.topics()[index]; topic.agent > 0)
+      IndicesOf(topic.kind)[static_cast<std::size_t>(topic.agent - 1)] = index;
   if (experiment.network.is_bundled())
     ListenToRows();
   else
@@ -72,27 +78,26 @@ Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed)
       [this](const RawReader::Bytes& bytes, const Sender& sender) { OnEvent(bytes, sender.sequence); }));
 }
 
+std::vector<std::size_t>& Recorder::IndicesOf(TopicKind kind) {
+  return kind == TopicKind::kState     ? states_
+         : kind == TopicKind::kCommand ? commands_
+         : kind == TopicKind::kMessage ? messages_
+                                       : actions_;
+}
+
 void Recorder::ListenToTopics() {
   const std::vector<Topic>& topics = window_.topics();
-  for (std::size_t index = 0; index < topics.size(); ++index)
+  for (std::size_t index = 0; index < topics.size(); ++index) {
+    if (topics[index].kind == TopicKind::kAction) continue;  // comes from here (TakeAction)
     readers_.push_back(std::make_unique<RawReader>(
         domain_, topics[index],
         [this, index, topic = topics[index]](const RawReader::Bytes& bytes, const Sender& sender) {
           OnSample(index, topic, bytes, sender.sequence);
         }));
+  }
 }
 
 void Recorder::ListenToRows() {
-  const std::vector<Topic>& topics = window_.topics();
-  for (std::vector<std::size_t>* indices : {&states_, &commands_, &messages_})
-    indices->resize(experiment_.agents.size());
-  for (std::size_t index = 0; index < topics.size(); ++index)
-    if (const Topic& topic = topics[index]; topic.agent > 0) {
-      auto& indices = topic.kind == TopicKind::kState     ? states_
-                      : topic.kind == TopicKind::kCommand ? commands_
-                                                          : messages_;
-      indices[static_cast<std::size_t>(topic.agent - 1)] = index;
-    }
   readers_.push_back(std::make_unique<RawReader>(
       domain_, Topic::Row(),
       [this](const RawReader::Bytes& bytes, const Sender& sender) { OnRow(bytes, sender.sequence); }));
@@ -183,6 +188,23 @@ std::vector<mascot_msgs::msg::Event> Recorder::Events(std::size_t skip) const {
   const std::lock_guard lock(mutex_);
   if (skip >= events_.size()) return {};
   return {events_.begin() + static_cast<std::ptrdiff_t>(skip), events_.end()};
+}
+
+bool Recorder::HasStates(std::int64_t tick) const {
+  const std::lock_guard lock(mutex_);
+  return window_.HasStates(tick);
+}
+
+bool Recorder::TakeAction(int agent, std::int64_t tick, std::span<const std::uint8_t> bytes) {
+  const std::lock_guard lock(mutex_);
+  if (window_.IsSilent(Topic::Action(agent), tick)) return false;
+  window_.Take(actions_[static_cast<std::size_t>(agent - 1)], tick, bytes);
+  return true;
+}
+
+void Recorder::EndActions(std::int64_t tick) {
+  const std::lock_guard lock(mutex_);
+  window_.EndActions(tick);
 }
 
 void Recorder::Settle() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,13 @@ class Recorder {
   std::int64_t Drain(bool give_up = false);
   /// The events so far, in order, without the first `skip`.
   std::vector<mascot_msgs::msg::Event> Events(std::size_t skip = 0) const;
+  /// Whether all states of `tick` have come, and the events that they speak of.
+  bool HasStates(std::int64_t tick) const;
+  /// Records what agent `agent` is given at `tick`, of which all states have come. Returns false, and does not, if it
+  /// is lost.
+  bool TakeAction(int agent, std::int64_t tick, std::span<const std::uint8_t> bytes);
+  /// All actions of `tick` have been taken: where agents take some, its row waits for that.
+  void EndActions(std::int64_t tick);
   /// The server has told its last tick (RowWindow::Settle()).
   void Settle();
   /// Whether all of these agents are lost, as the events so far say.
@@ -46,6 +54,7 @@ class Recorder {
  private:
   using Time = std::chrono::steady_clock::time_point;
 
+  std::vector<std::size_t>& IndicesOf(TopicKind kind);
   void ListenToTopics();
   void ListenToRows();
   void OnEvent(const RawReader::Bytes& bytes, std::int64_t sequence);
@@ -66,9 +75,9 @@ class Recorder {
   RowWindow window_;
   std::vector<mascot_msgs::msg::Event> events_;
   Time started_{}, last_command_{};
-  std::int64_t newest_row_ = 0;                            // sequence number of the newest sample of /row
-  RawReader::Bytes sample_;                                // one of a row, with its encapsulation
-  std::vector<std::size_t> states_, commands_, messages_;  // indices of topics, by id - 1; messages_: 0 for none
+  std::int64_t newest_row_ = 0;                                      // sequence number of the newest sample of /row
+  RawReader::Bytes sample_;                                          // one of a row, with its encapsulation
+  std::vector<std::size_t> states_, commands_, messages_, actions_;  // indices of topics, by id - 1; 0: none
 
   Row taken_;                                        // used only by the thread that calls Drain
   std::vector<std::unique_ptr<RawReader>> readers_;  // last: their callbacks use the members above

@@ -11,7 +11,10 @@
 namespace mascot {
 
 RowWindow::RowWindow(Rules rules)
-    : rules_(std::move(rules)), slots_(static_cast<std::size_t>(rules_.ticks)), sequences_(rules_.topics.size(), 0) {
+    : rules_(std::move(rules)),
+      takes_actions_(std::ranges::count(rules_.topics, TopicKind::kAction, &Topic::kind) > 0),
+      slots_(static_cast<std::size_t>(rules_.ticks)),
+      sequences_(rules_.topics.size(), 0) {
   for (Slot& slot : slots_) slot.row = Row(rules_.agents);
 }
 
@@ -39,7 +42,7 @@ void RowWindow::Begin(Slot& slot, std::int64_t tick) const {
   slot.events = 0;
   slot.row.clock.clear();
   slot.row.events.clear();
-  for (auto* const samples : {&slot.row.states, &slot.row.commands, &slot.row.messages})
+  for (auto* const samples : {&slot.row.states, &slot.row.commands, &slot.row.messages, &slot.row.actions})
     for (Row::Bytes& sample : *samples) sample.clear();
 }
 
@@ -59,8 +62,10 @@ bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::
   slot.events = std::max(slot.events, events);
   if (topic.kind == TopicKind::kState || topic.kind == TopicKind::kClock) ++slot.states;
   newest_ = std::max(newest_, tick);
-  if (slot.samples + silent_ == rules_.topics.size()) ++complete_;
-  return complete_ >= rules_.batch || tick == rules_.last_tick || newest_ - rows_ == rules_.patience;
+  const bool completes = slot.samples + silent_ == rules_.topics.size();
+  complete_ += completes;
+  return complete_ >= rules_.batch || tick == rules_.last_tick || newest_ - rows_ == rules_.patience ||
+         (takes_actions_ && (completes || (tick > acted_ && HasStates(tick))));
 }
 
 bool RowWindow::TakeEvent(const Event& event, std::span<const std::uint8_t> bytes, std::int64_t sequence) {
@@ -87,8 +92,9 @@ bool RowWindow::IsSilent(const Topic& topic, std::int64_t tick) const {
   return topic.traits().rhythm == TopicRhythm::kAnswer && silences_.Has(topic.agent, tick);
 }
 
-bool RowWindow::HasStates(const Slot& slot, std::int64_t events_before) const {
-  return slot.states == rules_.agents + 1 && slot.events <= events_before + std::ssize(slot.row.events);
+bool RowWindow::HasStates(std::int64_t tick) const {
+  const Slot& slot = slots_[PlaceOf(tick)];
+  return slot.tick == tick && slot.states == rules_.agents + 1 && slot.events <= newest_event_;
 }
 
 bool RowWindow::IsWhole(const Slot& slot) const {
@@ -104,10 +110,8 @@ bool RowWindow::Lacks(const Slot& slot, const Topic& topic) const {
 
 bool RowWindow::IsReady(const Slot& slot, bool give_up) {
   if (slot.tick != rows_ || slot.events > events_ + std::ssize(slot.row.events)) return false;
-  if (rules_.doubts && !settled_ && !give_up && slot.tick < rules_.last_tick) {
-    const Slot& next = SlotOf(slot.tick + 1);
-    if (next.tick != slot.tick + 1 || !HasStates(next, events_ + std::ssize(slot.row.events))) return false;
-  }
+  if (takes_actions_ && slot.tick > acted_) return false;
+  if (rules_.doubts && !settled_ && !give_up && slot.tick < rules_.last_tick && !HasStates(slot.tick + 1)) return false;
   if (IsWhole(slot)) return true;
   const bool states_complete = slot.states == rules_.agents + 1;
   return rules_.realtime && states_complete && (give_up || newest_ - slot.tick >= rules_.patience);
@@ -122,18 +126,26 @@ std::string RowWindow::Lacking() const {
   return names.empty() ? "" : fmt::format("{} of tick {}", names, rows_);
 }
 
+void RowWindow::LeaveOut(Slot& slot) {
+  if (!silences_.empty())  // what came too late, and was not taken by the server
+    for (const Topic& topic : rules_.topics)
+      if (IsSilent(topic, slot.tick)) SampleOf(slot.row, topic).clear();
+  if (rules_.realtime && takes_actions_)  // an agent that has missed the tick did not take its action
+    for (std::size_t i = 0; i < slot.row.actions.size(); ++i)
+      if (slot.row.commands[i].empty()) slot.row.actions[i].clear();
+}
+
 bool RowWindow::Next(bool give_up, Row& row) {
   complete_ = 0;
   Slot& slot = SlotOf(rows_);
   if (!IsReady(slot, give_up)) return false;
-  if (!silences_.empty())  // what came too late, and was not taken by the server
-    for (const Topic& topic : rules_.topics)
-      if (IsSilent(topic, slot.tick)) SampleOf(slot.row, topic).clear();
+  LeaveOut(slot);
   row.tick = slot.tick;
   std::swap(row.clock, slot.row.clock);
   std::swap(row.states, slot.row.states);
   std::swap(row.commands, slot.row.commands);
   std::swap(row.messages, slot.row.messages);
+  std::swap(row.actions, slot.row.actions);
   std::swap(row.events, slot.row.events);
   events_ += std::ssize(row.events);
   ++rows_;

@@ -16,11 +16,14 @@ namespace mascot {
 /// topics. The sequence numbers of each writer prove that no sample is lost (CheckSequence). Agents that are lost, as
 /// events say, send nothing.
 ///
+/// Actions come from here: a row waits until those of its tick are taken (EndActions()). They are recorded with the
+/// answers to them alone.
+///
 /// Without DDS, clock or lock: Recorder passes in the samples and takes the rows.
 class RowWindow {
  public:
   struct Rules {
-    std::vector<Topic> topics;  ///< clock, states, commands, and the messages of agents that send them
+    std::vector<Topic> topics;  ///< clock, states, commands, messages and actions, of the agents that have them
     int agents = 0;
     std::int64_t last_tick = 0;
     bool realtime = false;   ///< agents may miss ticks, so that a row may lack commands and messages
@@ -51,6 +54,13 @@ class RowWindow {
   void Settle() { settled_ = true; }
   /// Whether an agent is lost for the time being, as the events so far say.
   bool IsLost(int agent) const { return silences_.Has(agent, rules_.last_tick); }
+  /// Whether all states of `tick` have come, and the events that they speak of. Where agents take actions, rows should
+  /// be taken without delay then, and when a row is complete.
+  bool HasStates(std::int64_t tick) const;
+  /// All actions of `tick` have been taken.
+  void EndActions(std::int64_t tick) { acted_ = tick; }
+  /// Whether agents of the topic are lost at `tick`, as the events so far say.
+  bool IsSilent(const Topic& topic, std::int64_t tick) const;
   /// Swaps the next row into `row` if it is complete; in real time also if it only lacks commands or messages and has
   /// waited `patience` ticks for them, or at all if `give_up`. Returns whether it did.
   bool Next(bool give_up, Row& row);
@@ -83,19 +93,19 @@ class RowWindow {
   bool IsReady(const Slot& slot, bool give_up);
   /// Whether the slot has everything but what lost agents do not send.
   bool IsWhole(const Slot& slot) const;
-  /// Whether the states of a tick have come, and the events that they speak of, if those of earlier rows are known.
-  bool HasStates(const Slot& slot, std::int64_t events_before) const;
-  /// Whether agents of the topic are lost at `tick`.
-  bool IsSilent(const Topic& topic, std::int64_t tick) const;
+  /// Leaves out what was sent and did not count.
+  void LeaveOut(Slot& slot);
   /// Whether the slot waits for the answer of this topic.
   bool Lacks(const Slot& slot, const Topic& topic) const;
 
   const Rules rules_;
+  const bool takes_actions_;
   std::vector<Slot> slots_;
   std::vector<std::int64_t> sequences_;  // newest sequence number, by topic
   std::int64_t rows_ = 0;
   std::int64_t events_ = 0;  // in rows taken so far
   std::int64_t newest_event_ = 0;
+  std::int64_t acted_ = -1;  // EndActions()
   Silences silences_;
   bool settled_ = false;
   std::size_t silent_ = 0;     // topics of agents that are lost now

@@ -157,8 +157,9 @@ bool WireAudit::IsComplete() const {
     const auto reads = [&](const Topic& topic) { return reading.contains({process, topic}); };
     const auto writes = [&](const Topic& topic) { return writing.contains({process, topic}); };
     if (bundled && !(reads(Topic::Bundle(process)) && writes(Topic::Answers(process)))) return false;
-    if (bundled) continue;
     for (int id = process.first; id <= process.last; ++id) {
+      if (experiment_.agent(id).takes_actions && !reads(Topic::Action(id))) return false;
+      if (bundled) continue;
       if (!reads(Topic::State(id)) || !writes(Topic::Command(id))) return false;
       if (experiment_.agent(id).sends_messages && !writes(Topic::Message(id))) return false;
       for (const Graph::Neighbour& heard : experiment_.graph.HeardBy(id)) {

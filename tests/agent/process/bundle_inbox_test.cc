@@ -193,5 +193,35 @@ TEST_F(BundleInboxTest, WhatIsNotForTheseAgentsIsRefusedAndChangesNothing) {
       ThrowsMessage<std::runtime_error>("a bundle of tick 3 with a message of agent 5 at tick 1"));
 }
 
+TEST_F(BundleInboxTest, ATickWaitsForTheActionsOfAllAgentsThatTakeSome) {
+  const Experiment told =
+      Path("name = 'actions'\nmessage = 1\n[[agents.override]]\nid = 1\nlaw = { name = 'consensus' }\n");
+  BundleInbox inbox(told, {2, 3});
+  EXPECT_FALSE(inbox.OnAction(2, 0, std::vector{2.0}));
+  EXPECT_EQ(inbox.OnBundle(Bundle(0, sources_, 2)), News::kWaits);
+  EXPECT_EQ(inbox.OnBundle(Bundle(0, sources_, 2)), News::kWaits) << "sent again";
+  EXPECT_TRUE(inbox.OnAction(3, 0, std::vector{3.0}));
+  EXPECT_THAT(inbox.ActionOf(2), ElementsAre(2.0));
+  EXPECT_THAT(inbox.ActionOf(3), ElementsAre(3.0));
+  inbox.Answered();
+  EXPECT_FALSE(inbox.OnAction(2, 0, std::vector{9.0}));
+  EXPECT_THAT(inbox.ActionOf(2), ElementsAre(2.0)) << "a late one is ignored";
+  const std::vector<Said> said{{2, 0, {1}}, {3, 0, {1}}, {4, 0, {1}}};
+  EXPECT_EQ(inbox.OnBundle(Bundle(1, sources_, 2, said, /*events=*/1)), News::kWaits);
+  EXPECT_FALSE(inbox.OnAction(3, 1, std::vector{3.1}));
+  EXPECT_TRUE(inbox.OnEvent(1, {.tick = 1, .fault = Fault{.agent = 2, .kind = FaultKind::kHang}})) << "2 gets none";
+}
+
+TEST_F(BundleInboxTest, AMessageThatIsMissingIsFoundWithTheActionToo) {
+  BundleInbox inbox(Path("name = 'actions'\nmessage = 1\n"), {5, 5});
+  inbox.OnBundle(Bundle(0, {5, 4}, 1));
+  EXPECT_TRUE(inbox.OnAction(5, 0, std::vector{0.0}));
+  inbox.Answered();
+  EXPECT_FALSE(inbox.OnAction(5, 1, std::vector{0.0}));
+  inbox.OnBundle(Bundle(1, {5, 4}, 1, {}, /*events=*/1));
+  EXPECT_THAT([&] { inbox.OnEvent(1, {}); },
+              ThrowsMessage<std::runtime_error>("a bundle of tick 1 without a message of agent 4"));
+}
+
 }  // namespace
 }  // namespace mascot

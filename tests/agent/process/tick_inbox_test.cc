@@ -26,7 +26,8 @@ Motion At(double x) {
 /// Inbox of agent 1. Keeps the last complete tick for the checks of the tests.
 class Inbox {
  public:
-  explicit Inbox(const std::vector<Peer>& peers, bool realtime = false) : inbox_(1, peers, realtime) {}
+  explicit Inbox(const std::vector<Peer>& peers, bool realtime = false, bool takes_actions = false)
+      : inbox_(1, peers, realtime, takes_actions) {}
 
   /// Passes the state of a source (0: the agent itself) at `tick`, at x. Returns the tick that is complete; -1: none.
   std::int64_t State(std::size_t source, std::int64_t tick, double x = 0) {
@@ -37,6 +38,10 @@ class Inbox {
     return Keep(inbox_.OnMessage(source, tick, std::vector<double>{number}));
   }
 
+  /// Passes an action of one number.
+  std::int64_t Action(std::int64_t tick, double number) {
+    return Keep(inbox_.OnAction(tick, std::vector<double>{number}));
+  }
   /// Passes event number 1, which takes effect at `tick`.
   std::int64_t Killed(int agent, std::int64_t tick, bool unanswered) {
     return Keep(inbox_.OnEvent(1, {.tick = tick, .fault = Fault{.agent = agent, .unanswered = unanswered}}));
@@ -52,6 +57,10 @@ class Inbox {
   /// The message of a peer; peers count from 0.
   std::vector<double> message(std::size_t peer) const {
     const std::span<const double> data = complete_.value().samples[peer].message;
+    return {data.begin(), data.end()};
+  }
+  std::vector<double> action() const {
+    const std::span<const double> data = complete_.value().action;
     return {data.begin(), data.end()};
   }
   std::int64_t message_age(std::size_t peer) const { return complete_.value().samples[peer].message_age; }
@@ -314,6 +323,37 @@ TEST(TickInbox, WaitsForNoMessageOfAPeerThatIsLost) {
     for (const std::size_t source : {0, 1}) inbox.State(source, 2);
     EXPECT_EQ(inbox.State(2, 2), 2);
   }
+}
+
+// --- actions --------------------------------------------------------------------------------------------
+
+TEST(TickInbox, ATickOfAnAgentThatTakesActionsWaitsForItsOwn) {
+  for (const bool realtime : {false, kRealtime}) {
+    Inbox inbox(kOne, realtime, /*takes_actions=*/true);
+    inbox.State(0, 0);
+    EXPECT_EQ(inbox.State(1, 0), -1);
+    EXPECT_EQ(inbox.Action(0, 0.5), 0);
+    EXPECT_THAT(inbox.action(), ElementsAre(0.5));
+    EXPECT_EQ(inbox.Action(1, 1.5), -1) << "it may come first";
+    EXPECT_EQ(inbox.Action(0, 9), -1) << "a late one is ignored";
+    inbox.State(0, 1);
+    EXPECT_EQ(inbox.State(1, 1), 1);
+    EXPECT_THAT(inbox.action(), ElementsAre(1.5));
+  }
+}
+
+TEST(TickInbox, InRealTimeATickWhoseActionIsLateIsMissed) {
+  Inbox inbox(kNobody, kRealtime, /*takes_actions=*/true);
+  EXPECT_EQ(inbox.State(0, 0), -1);
+  EXPECT_EQ(inbox.State(0, 1), -1);
+  EXPECT_EQ(inbox.Action(0, 0.5), -1);
+  EXPECT_EQ(inbox.Action(1, 1.5), 1);
+}
+
+TEST(TickInbox, AnAgentThatIsLostIsGivenNoActions) {
+  Inbox inbox(kNobody, false, /*takes_actions=*/true);
+  inbox.Killed(1, 0, false);
+  EXPECT_EQ(inbox.State(0, 0), 0);
 }
 
 }  // namespace

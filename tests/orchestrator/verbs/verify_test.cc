@@ -70,16 +70,6 @@ TEST_F(Verify, FliesAgainWhatAProgramToldTheAgentsToDo) {
       "[run]\nduration_s = 0.5\n[agents]\ncount = 2\nmodel = 'double_integrator'\n[law]\nname = 'actions'\n";
   const std::string recording = RecordedWithActions(toml, File("told"));
   EXPECT_THAT(Check(recording).out, HasSubstr("the same, bit for bit: 51 ticks, 357 messages\n"));
-  const Said over_dds = Call(SetUpVerify, {recording, "--engine", "dds"});
-  EXPECT_EQ(over_dds.exit_code, 2);
-  EXPECT_THAT(over_dds.err,
-              HasSubstr("--engine dds: expected laws that take no actions, which are given in one process "
-                        "alone"));
-  const Said life = Call(SetUpReplay, {recording, "--to", "1"});
-  EXPECT_EQ(life.exit_code, 2);
-  EXPECT_THAT(life.err,
-              HasSubstr(recording + ": expected an agent whose law decides by itself, got agent 1, which takes "
-                                    "actions: verify flies its run again"));
   WriteFile(File("told.toml"), toml);
   const Said up = Call(SetUpUp, {File("told.toml"), "--out", File("up")});
   EXPECT_EQ(up.exit_code, 2);

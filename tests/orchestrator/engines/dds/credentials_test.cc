@@ -51,6 +51,19 @@ TEST(RightsOf, AgentsOnBundlesAreTheirOwnBundle) {
   EXPECT_THAT(Names(RightsOf(experiment, "rviz").writes), ElementsAre("/status"));
 }
 
+TEST(RightsOf, ActionsAreOfTheirAgentAndTheOrchestrator) {
+  const Experiment experiment = Load(
+      "[run]\nduration_s = 5.0\n[agents]\ncount = 2\n[[agents.override]]\nid = 2\nlaw = { name = 'consensus' }\n"
+      "[law]\nname = 'actions'\n[network]\nsecurity = 'graph'\n");
+  EXPECT_THAT(Names(RightsOf(experiment, "agent_1").reads),
+              ElementsAre("/agent_1/action", "/agent_1/bundle", "/event", "/experiment", "/request"));
+  EXPECT_THAT(Names(RightsOf(experiment, "agent_2").reads),
+              ElementsAre("/agent_2/bundle", "/event", "/experiment", "/request"));
+  EXPECT_THAT(Names(RightsOf(experiment, kOrchestrator).writes), testing::Contains("/agent_1/action"));
+  for (const char* other : {"agent_1", kPhysicsServer})
+    EXPECT_THAT(Names(RightsOf(experiment, other).writes), Not(testing::Contains("/agent_1/action")));
+}
+
 TEST(RightsOf, TheServerAreNoMoreThanItNeeds) {
   const Experiment experiment = Three("");
   EXPECT_THAT(Names(RightsOf(experiment, kPhysicsServer).reads),

@@ -325,5 +325,74 @@ TEST_F(LostAgentsTest, ARowThatWasTakenWithAnAnswerThatTheServerLacksIsAnError) 
                                                 "which has not reached the physics server"));
 }
 
+// --- actions --------------------------------------------------------------------------------------------
+
+/// Both agents take actions.
+class ActionsWindowTest : public testing::Test {
+ protected:
+  enum : std::size_t { kAction1 = 5, kAction2 = 6 };
+  static RowWindow::Rules WithActions(bool realtime) {
+    RowWindow::Rules rules = Rules(realtime);
+    rules.topics.insert(rules.topics.end(), {Topic::Action(1), Topic::Action(2)});
+    return rules;
+  }
+  /// Whether the loop is to be woken by one of these samples.
+  static bool Send(RowWindow& window, std::int64_t tick, const std::vector<std::size_t>& topics,
+                   std::int64_t events = 0) {
+    bool wake = false;
+    for (const std::size_t topic : topics)
+      wake |= window.Take(topic, tick, std::vector<std::uint8_t>{static_cast<std::uint8_t>(topic)},
+                          topic == kState1 ? events : 0);
+    return wake;
+  }
+  static const std::vector<std::size_t> kStates;
+  RowWindow window_{WithActions(false)}, realtime_{WithActions(true)};
+  Row row_{2};
+};
+const std::vector<std::size_t> ActionsWindowTest::kStates{kClock, kState1, kState2};
+
+TEST_F(ActionsWindowTest, AreDueWithAllStatesOfTheTickAndItsEvents) {
+  EXPECT_FALSE(Send(window_, 0, {kClock, kState1}));
+  EXPECT_FALSE(window_.HasStates(0));
+  EXPECT_TRUE(Send(window_, 0, {kState2}));
+  EXPECT_TRUE(window_.HasStates(0));
+  EXPECT_FALSE(window_.HasStates(1));
+  EXPECT_FALSE(Send(window_, 1, kStates, /*events=*/1));
+  EXPECT_FALSE(window_.HasStates(1));
+  EXPECT_TRUE(window_.TakeEvent({.tick = 1}, std::vector<std::uint8_t>{7}, 1));
+  EXPECT_TRUE(window_.HasStates(1));
+}
+
+TEST_F(ActionsWindowTest, ARowHasThemAndWaitsUntilAllAreTaken) {
+  Send(window_, 0, kStates);
+  Send(window_, 0, {kAction1, kAction2, kCommand1, kCommand2});
+  EXPECT_FALSE(window_.Next(false, row_));
+  window_.EndActions(0);
+  ASSERT_TRUE(window_.Next(false, row_));
+  EXPECT_EQ(row_.actions[0], (Row::Bytes{kAction1}));
+  EXPECT_EQ(row_.actions[1], (Row::Bytes{kAction2}));
+}
+
+TEST_F(ActionsWindowTest, OfAnAgentThatIsLostAreLeftOut) {
+  Send(window_, 0, kStates);
+  Send(window_, 0, {kAction1, kAction2, kCommand1});
+  window_.EndActions(0);
+  EXPECT_FALSE(window_.Next(false, row_));
+  window_.TakeEvent({.tick = 1, .fault = Fault{.agent = 2, .unanswered = true}}, std::vector<std::uint8_t>{7}, 1);
+  EXPECT_TRUE(window_.IsSilent(Topic::Action(2), 1));
+  ASSERT_TRUE(window_.Next(false, row_));
+  EXPECT_FALSE(row_.actions[0].empty());
+  EXPECT_TRUE(row_.actions[1].empty());
+}
+
+TEST_F(ActionsWindowTest, InRealTimeThatWereNotAnsweredAreLeftOut) {
+  Send(realtime_, 0, kStates);
+  Send(realtime_, 0, {kAction1, kAction2, kCommand1});
+  realtime_.EndActions(0);
+  ASSERT_TRUE(realtime_.Next(/*give_up=*/true, row_));
+  EXPECT_FALSE(row_.actions[0].empty());
+  EXPECT_TRUE(row_.actions[1].empty());
+}
+
 }  // namespace
 }  // namespace mascot

@@ -166,8 +166,9 @@ TEST_F(WireAuditTest, StrangersAreNamedOnEveryTopicOfTheRun) {
   for (const Voice& voice : {Voice{Topic::State(1), "physics_server"}, Voice{Topic::Bundle({1, 1}), "physics_server"},
                              Voice{Topic::Row(), "physics_server"}, Voice{Topic::Answers({1, 1}), "agent_1"},
                              Voice{Topic::Clock(), "physics_server"}, Voice{Topic::Command(1), "agent_1"},
-                             Voice{Topic::Message(1), "agent_1"}, Voice{Topic::Experiment(), "orchestrator"},
-                             Voice{Topic::Request(), "orchestrator"}, Voice{Topic::Status(), "processes of the run"}}) {
+                             Voice{Topic::Message(1), "agent_1"}, Voice{Topic::Action(1), "orchestrator"},
+                             Voice{Topic::Experiment(), "orchestrator"}, Voice{Topic::Request(), "orchestrator"},
+                             Voice{Topic::Status(), "processes of the run"}}) {
     WireAudit audit(experiment_, peers_);
     WireAudit::Guid guid;
     guid.guidPrefix = Participant(200);
@@ -297,6 +298,50 @@ TEST(WireAudit, IsNotCompleteWithoutEveryReaderOfMessages) {
   add(Topic::Message(2), true);
   EXPECT_TRUE(audit.IsComplete());
   EXPECT_EQ(audit.Violation(), "");
+}
+
+TEST(WireAudit, IsNotCompleteWithoutEveryReaderOfActions) {
+  for (const std::string delivery : {"bundled", "topics"}) {
+    const Experiment one = Load("[run]\nduration_s = 1.0\n[agents]\ncount = 1\n[law]\nname = 'actions'\n", delivery);
+    Peers peers;
+    peers.Know("agent_1", ProcessKey::WithPid(100));
+    WireAudit audit(one, peers);
+    audit.OnParticipant(Participant(100), "agent_1", "");
+    WireAudit::Guid guid;
+    guid.guidPrefix = Participant(100);
+    const auto add = [&](const Topic& topic, bool reads) {
+      ++guid.entityId.value[0];
+      audit.OnEndpoint(guid, topic.DdsName(), reads);
+    };
+    add(delivery == "topics" ? Topic::State(1) : Topic::Bundle({1, 1}), true);
+    add(delivery == "topics" ? Topic::Command(1) : Topic::Answers({1, 1}), false);
+    EXPECT_FALSE(audit.IsComplete());
+    add(Topic::Action(1), true);
+    EXPECT_TRUE(audit.IsComplete());
+    EXPECT_EQ(audit.Violation(), "");
+  }
+}
+
+TEST(WireAudit, AnAgentMayReadItsOwnActionsAlone) {
+  const Experiment two = Load(
+      "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[[agents.override]]\nid = 2\nlaw = { name = 'consensus' }\n"
+      "[law]\nname = 'actions'\n");
+  const auto violation_of = [&](int agent, const Topic& topic, bool reads) {
+    Peers peers;
+    for (const int id : {1, 2}) peers.Know(AgentName(id), ProcessKey::WithPid(100 + id));
+    WireAudit audit(two, peers);
+    audit.OnParticipant(Participant(100 + agent), AgentName(agent), "");
+    WireAudit::Guid guid;
+    guid.guidPrefix = Participant(100 + agent);
+    audit.OnEndpoint(guid, topic.DdsName(), reads);
+    return audit.Violation();
+  };
+  EXPECT_EQ(violation_of(1, Topic::Action(1), true), "");
+  EXPECT_EQ(violation_of(2, Topic::Action(1), true), "agent_2 reads /agent_1/action, which the graph does not let it");
+  EXPECT_EQ(violation_of(2, Topic::Action(2), true), "agent_2 reads /agent_2/action, which the graph does not let it")
+      << "its law takes none";
+  EXPECT_EQ(violation_of(1, Topic::Action(1), false),
+            "agent_1 writes /agent_1/action, which the graph does not let it");
 }
 
 // --- fresh processes ------------------------------------------------------------------------------------
