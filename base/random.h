@@ -11,7 +11,14 @@ namespace mascot {
 /// distributions are not. Each use has a stream of its own, so that an extra draw in one does not change another.
 class Random {
  public:
-  enum class Stream : std::uint32_t { kPositions = 1, kGraph = 2, kSweep = 3, kVelocities = 4, kHeadings = 5, kEpisodes = 6 };
+  enum class Stream : std::uint32_t {
+    kPositions = 1,
+    kGraph = 2,
+    kSweep = 3,
+    kVelocities = 4,
+    kHeadings = 5,
+    kEpisodes = 6
+  };
 
   Random(std::uint64_t seed, Stream stream) : engine_(Sequence(seed, stream)) {}
 
