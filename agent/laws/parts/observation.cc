@@ -48,8 +48,7 @@ ObservationLayout LayoutOf(const Experiment& experiment, std::size_t message) {
   return {places, message};
 }
 
-Observer::Observer(const Experiment& experiment, int id, const ObservationLayout& layout)
-    : layout_(layout) {
+Observer::Observer(const Experiment& experiment, int id, const ObservationLayout& layout) : layout_(layout) {
   for (const Graph::Neighbour& neighbour : experiment.graph.HeardBy(id)) ids_.push_back(neighbour.id);
 }
 
