@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "orchestrator/engines/inprocess.h"
@@ -155,11 +157,13 @@ TEST(Episodes, ALawThatFailsIsToldAndAnotherEpisodeMayFollow) {
 
 TEST(Episodes, RefuseEventsThatAreNotLegalAndChangeNothing) {
   Episodes episodes(TwoOf(), "pair.toml", {});
-  for (const auto& [event, words] : std::vector<std::pair<std::string, std::string>>{
-           {"cut = [[1, 3]]", "event by hand: expected an edge of the graph (i hears j), got [1, 3]"},
-           {"law = { name = 'consensus' }", "event by hand: expected keys of [[events]], got what no file has there"},
-           {"set = { 'run.seed' = 2 }", "event by hand: "}})
-    EXPECT_THAT([&] { episodes.Take(event); }, ThrowsMessage<std::exception>(HasSubstr(words))) << event;
+  const std::pair<std::string, std::string> refused[] = {
+      {"cut = [[1, 3]]", "event by hand: expected an edge of the graph (i hears j), got [1, 3]"},
+      {"law = { name = 'consensus' }", "event by hand: expected keys of [[events]], got what no file has there"},
+      {"set = { 'run.seed' = 2 }", "event by hand: "}};
+  for (const auto& event : refused)
+    EXPECT_THAT([&] { episodes.Take(event.first); }, ThrowsMessage<std::exception>(HasSubstr(event.second)))
+        << event.first;
   episodes.Step();
   EXPECT_THAT(episodes.row().events, IsEmpty());
 }
