@@ -237,7 +237,7 @@ py::tuple EndsOf(const TeamVector& vector) {
   return py::make_tuple(disagreement, terminated, truncated, was_reset, any_is_lost);
 }
 
-/// Of all environments, at the tick that the last step has reached.
+/// The true states of the teams of all environments at the tick that the last step has reached.
 py::array_t<double> ReachedStates(const TeamVector& vector) {
   py::array_t<double> states(
       {Count(vector.size()), py::ssize_t{vector.first().experiment().size()}, Count(TeamEnv::kStateSize)});

@@ -65,7 +65,7 @@ Episodes::~Episodes() {
   }
 }
 
-Experiment Episodes::Load(std::vector<Override> changes) const {
+Experiment Episodes::Load(std::span<const Override> changes) const {
   std::vector<Override> all = overrides_;
   all.insert(all.end(), changes.begin(), changes.end());
   Experiment experiment = LoadExperiment(text_, path_, all);

@@ -102,8 +102,7 @@ class Episodes {
   void Restore(const Snapshot& snapshot, const std::function<void()>& look);
 
  private:
-  Experiment Load(std::vector<Override> changes) const;
-  void Begin();
+  Experiment Load(std::span<const Override> changes) const;
   void Sense();
   void AskWitness();
   /// Lets the agents answer this tick, and hands the row to the witness.

@@ -38,7 +38,7 @@ const std::uint8_t* BodyOf(const Row& row, const Topic& topic, std::size_t body)
   return bytes.data() + kEncapsulation.size();
 }
 
-/// Likewise, of a message or an action, which has at most `most` numbers.
+/// The body of a message or an action of `row`, which has at most `most` numbers. Throws as BodyOf() does.
 const std::uint8_t* BodyOfNumbers(const Row& row, const Topic& topic, std::size_t most) {
   const Row::Bytes& bytes = SampleIn(row, topic);
   const bool has_head = bytes.size() >= kEncapsulation.size() + MessageBody(0);

@@ -195,8 +195,8 @@ class ParallelEnv(_Base):
         return {a: rows[self._index[a]] for a in agents}
 
     def _take(self, actions: Mapping[str, Any]) -> None:
-        if actions.keys() != dict.fromkeys(self.agents).keys():
-            wrong = sorted(actions.keys() - dict.fromkeys(self.agents).keys(), key=str)
+        if actions.keys() != set(self.agents):
+            wrong = sorted(actions.keys() - set(self.agents), key=str)
             missing = [a for a in self.agents if a not in actions]
             raise ValueError("actions: expected one for each of env.agents, got "
                              + (f"one for {wrong[0]!r}" if wrong else f"none for {missing[0]!r}"))

@@ -14,7 +14,7 @@ from mascot import _core
 
 
 class Run:
-    """A recorded run; `mascot.load()` makes one. What it holds is read when it is first asked for."""
+    """A recorded run; `mascot.load()` makes one. Its arrays are read at once, other files each time they are asked for."""
 
     def __init__(self, run: str | os.PathLike[str]) -> None:
         path, self.arrays, self.loss = _core.core.arrays(_core.path_of(run))

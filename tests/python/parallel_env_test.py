@@ -29,6 +29,22 @@ restart = 2
 """
 
 
+def second_with(law):
+    """Two agents, of which the second has a law of its own."""
+    return f"""
+[run]
+duration_s = 1.0
+[agents]
+count = 2
+position_m = [[0, 0, 1], [5, 0, 2]]
+[[agents.override]]
+id = 2
+law = {{ {law} }}
+[graph]
+topology = "complete"
+"""
+
+
 def team(**keys):
     return mascot.parallel_env(LEADERLESS, set={**SHORT, **keys.pop("set", {})}, **keys)
 
@@ -171,18 +187,7 @@ edges = [[1, 2, 0.5], [2, 3]]
         np.testing.assert_array_equal(first["agent_1"], copy)
 
     def test_agents_with_laws_of_their_own_fly_by_them(self):
-        env = mascot.parallel_env(self.write("""
-[run]
-duration_s = 1.0
-[agents]
-count = 2
-position_m = [[0, 0, 1], [5, 0, 2]]
-[[agents.override]]
-id = 2
-law = { name = "waypoint", waypoints_m = [[9, 0, 2]] }
-[graph]
-topology = "complete"
-"""))
+        env = mascot.parallel_env(self.write(second_with('name = "waypoint", waypoints_m = [[9, 0, 2]]')))
         env.reset()
         self.assertEqual(env.possible_agents, ["agent_1"])
         while env.agents:
@@ -386,18 +391,7 @@ class Mistakes(TestCase):
             self.assertNotIn("expected a TOML value", str(caught.exception))
 
     def test_a_law_in_python_is_not_flown_inside_of_python(self):
-        text = """
-[run]
-duration_s = 1.0
-[agents]
-count = 2
-position_m = [[0, 0, 1], [5, 0, 2]]
-[[agents.override]]
-id = 2
-law = { name = "custom", python = "def control(t, me, neighbours): return [0, 0]" }
-[graph]
-topology = "complete"
-"""
+        text = second_with('name = "custom", python = "def control(t, me, neighbours): return [0, 0]"')
         self.expect("a law in Python does not fly inside of another program in Python",
                     lambda: mascot.parallel_env(self.write(text)), RuntimeError)
 
