@@ -42,6 +42,15 @@ std::string Peers::ProvenProcessOf(const GuidPrefix& participant) const {
 
 void Peers::Know(const std::string& process, const ProcessKey& key) {
   const std::lock_guard lock(mutex_);
+  Note(process, key);
+}
+
+void Peers::Know(const std::string& process, const std::function<ProcessKey()>& start) {
+  const std::lock_guard lock(mutex_);
+  Note(process, start());
+}
+
+void Peers::Note(const std::string& process, const ProcessKey& key) {
   const auto entry = std::ranges::find(entries_, process, &Entry::process);
   if (entry == entries_.end()) {
     Add(process, key, /*free=*/{});

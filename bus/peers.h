@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -36,6 +37,9 @@ class Peers {
   /// Notes that there is such a process, and what is known of it. An exact key replaces what was known before, and so
   /// does the key of another process id: a fresh process has taken the place. Another key does not.
   void Know(const std::string& process, const ProcessKey& key);
+  /// The same of a process that `start` starts, whose key it returns. What the process does before that is seen only
+  /// then. `start` must not call this object.
+  void Know(const std::string& process, const std::function<ProcessKey()>& start);
   /// Notes that there is a process that somebody starts by hand. The first participant that has its name takes its
   /// place, if it fits `key`, or that is of nobody; when it leaves, the place is free again.
   void Await(const std::string& process, const ProcessKey& key);
@@ -85,6 +89,8 @@ class Peers {
     /// That has taken the place: of a process that is started by hand the first, whose leaving frees it; else the last.
     std::optional<GuidPrefix> participant = {};
   };
+  // All with mutex_ held.
+  void Note(const std::string& process, const ProcessKey& key);
   void Add(const std::string& process, const ProcessKey& key, std::optional<ProcessKey> free);
   /// The process of a participant by its certificate alone; empty: none.
   std::string ProvenProcessOf(const GuidPrefix& participant) const;

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <future>
+
 namespace mascot {
 namespace {
 
@@ -80,6 +82,20 @@ TEST_F(PeersTest, AProcessThatWasStartedIsKnownByItsIdUnderWhateverName) {
 TEST_F(PeersTest, ANameAloneDoesNotMakeAProcessThatWasStarted) {
   EXPECT_EQ(peers_.Claim(ParticipantOf(1, 999), "agent_1"), "");
   EXPECT_EQ(peers_.Believe(Topic::Command(1), ParticipantOf(1, 999)), "");
+}
+
+TEST_F(PeersTest, AProcessThatIsBeingStartedIsKnownWhenItIsHeardOf) {
+  std::promise<void> started;
+  std::future<std::string> claimed;
+  peers_.Know("agent_1", [&] {
+    claimed = std::async(std::launch::async, [&] {
+      started.set_value();
+      return peers_.Claim(ParticipantOf(1, 111), "agent_1");
+    });
+    started.get_future().wait();
+    return ProcessKey::WithPid(111);
+  });
+  EXPECT_EQ(claimed.get(), "agent_1");
 }
 
 TEST_F(PeersTest, OnlyTheOrchestratorTellsAgentsWhatToDo) {

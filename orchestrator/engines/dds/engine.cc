@@ -724,9 +724,10 @@ void DdsRun::StartAfresh(AgentRange agents, std::int64_t tick) {
     *std::next(std::ranges::find(arguments, "--credentials")) =
         credentials_->Write(credentials_->Issue(process, RankOf(process))).string();
   arguments.insert(arguments.end(), {"--from-tick", std::to_string(tick)});
-  const pid_t pid = children_.Spawn(process, ProgramFolder() / "agent", arguments,
-                                    folder_.Log(process + "_from_tick_" + std::to_string(tick)));
-  peers_.Know(process, KeyOf(process, pid));
+  peers_.Know(process, [&] {  // on a busy machine it may announce itself before we go on
+    return KeyOf(process, children_.Spawn(process, ProgramFolder() / "agent", arguments,
+                                          folder_.Log(process + "_from_tick_" + std::to_string(tick))));
+  });
   console_.Line(fmt::format("{} starts afresh at {} s", process, ShortestFloat(experiment_.time_s(tick))));
 }
 
