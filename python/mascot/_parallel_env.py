@@ -147,7 +147,7 @@ class ParallelEnv(_Base):
     def event(self, **keys: Any) -> None:
         """An event by hand at the next tick, with the keys of [[events]] but at_s: env.event(cut=[[1, 2]]), or
         env.event(set={"control.max_acceleration_m_per_s2": 1.0})."""
-        self._team.take(", ".join(f"{key} = {_core.toml(value)}" for key, value in keys.items()))
+        self._team.take("\n".join(f"{key} = {_core.toml(value)}" for key, value in keys.items()))
 
     def snapshot(self) -> _core.Snapshot:
         """This episode so far, for restore(). It can be pickled."""

@@ -286,6 +286,15 @@ class Events(TestCase):
         self.assertEqual(observations["agent_1"][heard], 0)
         self.assertEqual(observations["agent_2"][heard], 1)
 
+    def test_it_may_have_several_keys(self):
+        env = team(dtype="float64")
+        env.reset()
+        env.event(set={"control.max_acceleration_m_per_s2": 0.1}, agents=[1])
+        for _ in range(40):
+            env.step({agent: [1, 0, 0] for agent in env.agents})
+        speeds = env.state()[:2, 3]
+        self.assertLess(speeds[0], 0.5 * speeds[1])
+
     def test_one_that_is_not_legal_is_refused_and_changes_nothing(self):
         env = team()
         env.reset()
