@@ -39,6 +39,12 @@ RunRequests::RunRequests(const Experiment& experiment, double pace)
       status_{.pace = experiment.run.mode == Mode::kRealtime ? experiment.run.speed : pace},
       live_(ahead_->live) {}
 
+void RunRequests::CheckPace(double pace) {
+  if (PaceRow().range.Holds(pace)) return;
+  throw std::invalid_argument(
+      fmt::format("pace: expected a number in {}, got {}", PaceRow().range.Text(), ShortestFloat(pace)));
+}
+
 Answer RunRequests::Ask(const Request& request) {
   const std::lock_guard one_at_a_time(asking_);
   const Answer too_late{false, "the run is over"};
@@ -83,9 +89,7 @@ RunRequests::Order RunRequests::Checked(const Request& request, std::int64_t fro
       break;
     case Request::Kind::kPace:
       if (realtime) throw std::invalid_argument("pace: expected a run in lockstep, got one in real time (run.speed)");
-      if (!PaceRow().range.Holds(request.number))
-        throw std::invalid_argument(fmt::format("pace: expected a number in {}, got {}", PaceRow().range.Text(),
-                                                ShortestFloat(request.number)));
+      CheckPace(request.number);
       break;
     case Request::Kind::kSeek:
       throw std::invalid_argument("seek: expected a recording, got a run: nobody can go back in it, or ahead");
@@ -221,6 +225,15 @@ void RunRequests::CheckAgain() {
   if (!answer_) order_.reset();
   changed_.notify_all();
 }
+
+void RunRequests::Refuse(std::string words) {
+  const std::lock_guard lock(mutex_);
+  if (!order_ || answer_) return;
+  answer_ = Answer{false, std::move(words)};
+  changed_.notify_all();
+}
+
+void RunRequests::Refuse(const ConfigError& error) { Refuse(Refusal(error)); }
 
 void RunRequests::CallWhenChanged(std::function<void(const RunStatus&)> tell) {
   const std::lock_guard lock(mutex_);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "experiment/live_experiment.h"
+#include "experiment/toml/section.h"
 #include "orchestrator/control/run_control.h"
 #include "orchestrator/team/row_sink.h"
 
@@ -33,6 +34,8 @@ class RunRequests final : public RunControl, public RowSink {
 
   /// `pace`: simulated seconds a second to begin with. `experiment` must outlive this object.
   RunRequests(const Experiment& experiment, double pace);
+  /// Throws std::invalid_argument for a pace outside of the range of run.pace.
+  static void CheckPace(double pace);
 
   /// Returns when the request is carried out or refused. It is refused at once if it is not legal, after 5 s if the run
   /// has not begun by then, and when the run ends before the request is carried out.
@@ -62,6 +65,9 @@ class RunRequests final : public RunControl, public RowSink {
   /// The order of Next(), an event, cannot take effect before the tick Order::number: its request is checked again, for
   /// later ticks.
   void CheckAgain();
+  /// The order of Next() cannot be carried out, for these reasons.
+  void Refuse(std::string words);
+  void Refuse(const ConfigError& error);
   /// How the ticks go on now.
   void SetStatus(bool paused, double pace);
   void SetDomain(int domain);

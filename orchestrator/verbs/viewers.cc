@@ -1,15 +1,12 @@
 #include "orchestrator/verbs/viewers.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
 #include "base/utf8.h"
-#include "bus/addresses.h"
 #include "orchestrator/live/server/origin.h"
 #include "orchestrator/live/server/qr_code.h"
-#include "orchestrator/live/shown/shown_keys.h"
 #include "orchestrator/verbs/show_recording.h"
 #include "system/script.h"
 
@@ -49,17 +46,8 @@ std::unique_ptr<const PythonMetrics> MetricsOf(const std::string& path) try {
 
 Steering SteeringFor(bool watch_only) { return Steering(watch_only ? Steering::By::kToken : Steering::By::kAll); }
 
-std::vector<std::string> AddressesOf(const std::string& url) {
-  std::vector<std::string> addresses;
-  for (const std::string_view any : {"http://0.0.0.0:", "http://[::]:"})
-    if (url.starts_with(any))
-      for (const std::string& address : AddressesForOthers())
-        addresses.push_back("http://" + address + ":" + url.substr(any.size()));
-  return addresses.empty() ? std::vector{url} : addresses;
-}
-
 void PrintAddresses(const LiveView& view, Console& console) {
-  const std::vector<std::string> addresses = AddressesOf(view.url());
+  const std::vector<std::string> addresses = view.addresses();
   const std::string suffix = view.steering_suffix();
   for (const std::string& address : addresses) console.Line("view           " + address);
   if (!suffix.empty()) console.Line("steer          " + addresses.front() + suffix);
@@ -70,7 +58,7 @@ void PrintAddresses(const LiveView& view, Console& console) {
 
 Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment,
                  const Prediction& prediction, const RunMeter& meter, RunRequests& requests, Console& console) try
-    : args_(args), requests_(requests), console_(console), metrics_(MetricsOf(args.metric_file)) {
+    : args_(args), console_(console), metrics_(MetricsOf(args.metric_file)) {
   if (!args.at) return;
   view_.emplace(experiment, prediction, meter, requests,
                 LiveView::Options{.address = args.at->address,
@@ -81,25 +69,17 @@ Viewers::Viewers(const ViewerArgs& args, const std::string& engine, const Experi
                                   .pace = requests.status().pace,
                                   .steering = SteeringFor(args.watch_only)},
                 [this](const std::string& line) { Log(line); });
-  view_->SetExperiment(experiment, ShownKeysOf(experiment));
-  events_.emplace(*view_, requests);
   if (metrics_)
     metric_curves_.emplace(
         experiment, *metrics_, experiment.ticks(), MetricCurves::Rows::kAsTheyCome,
-        [this](std::string message) { view_->SetMetrics(std::move(message)); },
+        [this](std::string message) { view_->page().SetMetrics(std::move(message)); },
         [this](const std::string& line) { Log(line); });
-  requests.CallWhenChanged([this](const RunStatus& status) {
-    const auto phase = status.paused ? RunState::Phase::kPaused : RunState::Phase::kRunning;
-    view_->SetState({.phase = phase, .pace = status.pace});
-  });
-  PrintAddresses(*view_, console);
+  PrintAddresses(view_->page(), console);
 } catch (const ConfigError&) {
   throw;
 } catch (const std::runtime_error& failure) {
   throw ConfigError({std::string("--view: ") + failure.what()});
 }
-
-Viewers::~Viewers() { requests_.CallWhenChanged(nullptr); }
 
 void Viewers::Log(const std::string& line) {
   const std::lock_guard lock(mutex_);
@@ -125,60 +105,31 @@ void Viewers::Keep(const std::string& line) try {
 
 void Viewers::AddTo(std::vector<RowSink*>& sinks) {
   if (!view_) return;
-  std::vector<RowSink*> inner_sinks{&*view_, &*events_};
-  if (metric_curves_) inner_sinks.push_back(&*metric_curves_);
-  for (RowSink* inner : inner_sinks)
-    sinks.push_back(
-        sinks_.emplace_back(std::make_unique<ViewSink>(*inner, [this](const std::string& why) { view_->Fail(why); }))
-            .get());
+  view_->AddTo(sinks);
+  if (metric_curves_) view_->Add(*metric_curves_, sinks);
 }
 
 void Viewers::SayHowItEnded(const EngineResult& result) {
-  if (!view_) return;
-  const auto phase = result.failure.empty() ? RunState::Phase::kDone : RunState::Phase::kFailed;
-  RunState state{.phase = phase, .pace = requests_.status().pace};
-  if (result.contacts) state.contacts = static_cast<std::uint64_t>(result.contacts->total());
-  view_->SetState(state);
+  if (view_) view_->SayHowItEnded(result);
 }
 
 bool Viewers::Stay() const {
-  return view_ && !view_->has_failed() && (args_.stay || (console_.is_on_terminal() && view_->is_watched()));
+  return view_ && !view_->page().has_failed() &&
+         (args_.stay || (console_.is_on_terminal() && view_->page().is_watched()));
 }
 
 void Viewers::ShowRecording(const RunFolder& folder, StopSignal& stop) try {
-  const std::string url = view_->url();
-  const auto at = ReadHostAndPort(std::string_view(url).substr(std::string_view("http://").size()));
-  const auto port = at && at->port ? static_cast<std::uint16_t>(*at->port) : args_.at->port;
-  const Showing showing{.at = {.address = args_.at->address, .port = port},
+  const LiveView& page = view_->page();
+  const Showing showing{.at = {.address = args_.at->address, .port = page.port()},
                         .allowed_origins = args_.allowed_origins,
-                        .steering = view_->steering(),
+                        .steering = page.steering(),
                         .metrics = metrics_.get()};
-  requests_.CallWhenChanged(nullptr);
-  sinks_.clear();
-  events_.reset();
   metric_curves_.reset();
   view_.reset();  // it has the port
   console_.Line("the recording is shown until Ctrl-C");
   mascot::ShowRecording(folder.path().string(), showing, "--view", stop, console_);
 } catch (const std::exception& failure) {
   console_.Warning("the recording is not shown: " + std::string(failure.what()));
-}
-
-void Viewers::Events::Adopt(const LiveExperiment& live, std::span<const Event> /*events*/) {
-  now_ = live.now();
-  keys_ = ShownKeysOf(live);
-}
-
-void Viewers::Events::Add(const FlownRow& row) {
-  const auto& events = row.decoded().events;
-  if (events.empty()) return;
-  const std::vector<int> by_hand = requests_.numbers_by_hand();
-  for (const DecodedRow::RowEvent& event : events)
-    view_.OnEvent({.number = event.number,
-                   .tick = row.tick(),
-                   .toml = event.event.Toml(),
-                   .by_hand = std::ranges::binary_search(by_hand, event.number)},
-                  *now_, keys_);
 }
 
 }  // namespace mascot

@@ -13,12 +13,12 @@
 #include "orchestrator/control/run_requests.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/live/server/address.h"
-#include "orchestrator/live/shown/live_view.h"
 #include "orchestrator/live/shown/metric_curves.h"
-#include "orchestrator/live/shown/view_sink.h"
+#include "orchestrator/live/shown/run_view.h"
 #include "orchestrator/recording/run_folder.h"
 #include "system/console.h"
 #include "system/log_file.h"
+#include "system/stop_signal.h"
 
 namespace CLI {
 class App;
@@ -48,9 +48,6 @@ std::unique_ptr<const PythonMetrics> MetricsOf(const std::string& path);
 /// With --watch-only, viewers steer who know a new token; without, all.
 Steering SteeringFor(bool watch_only);
 
-/// The addresses at which a server at `url`, "http://0.0.0.0:8765", is reached: `url`, or, if it listens at every
-/// address of this machine, those that others may type.
-std::vector<std::string> AddressesOf(const std::string& url);
 /// Prints where the page is, and, if not all may steer, the address for those who may. If other machines may reach it,
 /// and the output is a terminal, prints a QR code of it, too.
 void PrintAddresses(const LiveView& view, Console& console);
@@ -62,12 +59,11 @@ class Viewers {
   /// Throws ConfigError if no viewer could watch.
   Viewers(const ViewerArgs& args, const std::string& engine, const Experiment& experiment, const Prediction& prediction,
           const RunMeter& meter, RunRequests& requests, Console& console);
-  ~Viewers();
   Viewers(const Viewers&) = delete;
   Viewers& operator=(const Viewers&) = delete;
 
   /// Address of the page; empty: there is none.
-  std::string url() const { return view_ ? AddressesOf(view_->url()).front() : ""; }
+  std::string url() const { return view_ ? view_->page().addresses().front() : ""; }
 
   /// From now on, lines about viewers are also written to logs/viewers.log; the first line creates the file.
   void LogTo(const RunFolder& folder);
@@ -84,27 +80,12 @@ class Viewers {
   void ShowRecording(const RunFolder& folder, StopSignal& stop);
 
  private:
-  /// Tells viewers of the events that rows bring.
-  class Events final : public RowSink {
-   public:
-    Events(LiveView& view, const RunRequests& requests) : view_(view), requests_(requests) {}
-    void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
-    void Add(const FlownRow& row) override;
-
-   private:
-    LiveView& view_;
-    const RunRequests& requests_;
-    std::shared_ptr<const Experiment> now_;
-    std::vector<ShownKey> keys_;
-  };
-
   /// Prints a line about viewers, and keeps it in the log. From any thread.
   void Log(const std::string& line);
   /// Adds a line to the log, or to `lines_` until there is one. The caller holds `mutex_`.
   void Keep(const std::string& line);
 
   const ViewerArgs& args_;
-  RunRequests& requests_;
   Console& console_;
   std::mutex mutex_;                // guards what follows
   std::vector<std::string> lines_;  // lines for the log, until its folder is known
@@ -113,10 +94,8 @@ class Viewers {
   bool no_file_ = false;  // the log file could not be made
 
   const std::unique_ptr<const PythonMetrics> metrics_;
-  std::optional<LiveView> view_;
+  std::optional<RunView> view_;
   std::optional<MetricCurves> metric_curves_;
-  std::optional<Events> events_;
-  std::vector<std::unique_ptr<ViewSink>> sinks_;
 };
 
 }  // namespace mascot

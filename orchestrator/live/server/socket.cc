@@ -356,6 +356,7 @@ class SocketServer::Impl {
     Bind();
     const std::string address = acceptor_.local_endpoint().address().to_string();
     url_ = UrlOf(acceptor_.local_endpoint());
+    port_ = acceptor_.local_endpoint().port();
     server_.origin_check = {server_.options.address, address, server_.options.allowed_origins};
   }
   ~Impl() {
@@ -373,6 +374,7 @@ class SocketServer::Impl {
   }
 
   const std::string& url() const { return url_; }
+  std::uint16_t port() const { return port_; }
   void Post(std::function<void()> function) {
     if (!has_failed_) asio::post(server_.io, std::move(function));
   }
@@ -486,6 +488,7 @@ class SocketServer::Impl {
   tcp::acceptor acceptor_;
   asio::steady_timer timer_, pause_;
   std::string url_;
+  std::uint16_t port_ = 0;
   std::atomic<bool> has_failed_ = false;
   std::thread thread_;
 };
@@ -495,6 +498,7 @@ SocketServer::SocketServer(SocketOptions options, SocketUser& user, std::functio
 SocketServer::~SocketServer() = default;
 void SocketServer::Start() { impl_->Start(); }
 std::string SocketServer::url() const { return impl_->url(); }
+std::uint16_t SocketServer::port() const { return impl_->port(); }
 void SocketServer::Post(std::function<void()> function) { impl_->Post(std::move(function)); }
 void SocketServer::Fail(const std::string& why) {
   impl_->Post([why] { throw std::runtime_error(why); });

@@ -83,6 +83,7 @@ class SocketServer {
   void Start();
   /// "http://127.0.0.1:8765"
   std::string url() const;
+  std::uint16_t port() const;
   /// Calls `function` in the server's thread, soon. From any thread.
   void Post(std::function<void()> function);
   /// Ends the server, because of an error in our own code. From any thread.

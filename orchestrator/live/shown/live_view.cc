@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
+#include "bus/addresses.h"
 #include "bus/wire.h"
 #include "experiment/phase.h"
 #include "idl/topics.h"
@@ -63,6 +65,15 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       server_(OptionsOf(options), *this, std::move(log)),
       request_queue_(control) {
   server_.Start();
+}
+
+std::vector<std::string> LiveView::addresses() const {
+  std::vector<std::string> addresses;
+  for (const std::string_view any : {"http://0.0.0.0:", "http://[::]:"})
+    if (url().starts_with(any))
+      for (const std::string& address : AddressesForOthers())
+        addresses.push_back("http://" + address + ":" + url().substr(any.size()));
+  return addresses.empty() ? std::vector{url()} : addresses;
 }
 
 void LiveView::Adopt(const LiveExperiment& live, std::span<const Event> /*events*/) { left_out_.Adopt(live.now()); }

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -54,6 +55,10 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
 
   /// Address of the page.
   std::string url() const { return server_.url(); }
+  std::uint16_t port() const { return server_.port(); }
+  /// The addresses at which the page is reached: url(), or, if it listens at every address of this machine, those that
+  /// others may type.
+  std::vector<std::string> addresses() const;
   /// What to append to an address so that who opens it may steer; empty: nothing, all may.
   std::string steering_suffix() const { return steering_.token().empty() ? "" : "/#steer=" + steering_.token(); }
   /// From the run's thread.
