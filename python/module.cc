@@ -1,5 +1,6 @@
 // The module mascot._mascot: what mascot/*.py stands on. Arrays go in and out as NumPy's; while C++ computes, other
 // threads of Python run.
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -8,6 +9,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +21,7 @@
 #include "base/same_floating_point.h"
 #include "experiment/toml/input.h"
 #include "orchestrator/engines/inprocess.h"
+#include "orchestrator/live/server/address.h"
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/recording/run_arrays.h"
@@ -51,6 +54,38 @@ auto Compute(Work&& work) {
   const py::gil_scoped_release release;
   const SameFloatingPoint same;
   return work();
+}
+
+/// Whether Python has a signal to handle, such as Ctrl-C: looks a few times a second.
+class Signals {
+ public:
+  bool AreThere() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return false;
+    next_ = now + std::chrono::milliseconds(50);
+    const py::gil_scoped_acquire acquire;
+    return PyErr_CheckSignals() != 0;  // then it has set what the handler has raised
+  }
+
+ private:
+  std::chrono::steady_clock::time_point next_ = {};
+};
+
+/// A handler of Python has raised in this thread while whoever steps an episode waited for viewers.
+thread_local bool has_raised = false;
+
+bool MayWait() {
+  thread_local Signals signals;
+  return !(has_raised = has_raised || signals.AreThere());
+}
+
+/// As Compute(), for what may wait for viewers: at Ctrl-C it ends as if they had waited no longer, and Python hears of
+/// it.
+template <class Work>
+void ComputeOrWait(Work&& work) {
+  has_raised = false;
+  Compute(work);
+  if (has_raised) throw py::error_already_set();
 }
 
 py::array_t<double> ArrayOf(std::span<const double> values, std::vector<py::ssize_t> shape) {
@@ -175,9 +210,9 @@ void BindTeamEnv(py::module_& module) {
            [](TeamEnv& team, const Doubles& actions, const Bools& given) {
              const auto numbers = Numbers(actions, team.agents().size() * team.action_size());
              const std::vector<char> which = CharsOf(given);
-             Compute([&] { team.Step(numbers, which); });
+             ComputeOrWait([&] { team.Step(numbers, which); });
            })
-      .def("go_on", [](TeamEnv& team) { Compute([&] { team.Step(); }); })
+      .def("go_on", [](TeamEnv& team) { ComputeOrWait([&] { team.Step(); }); })
       .def("act",
            [](TeamEnv& team, int id, const Doubles& action) {
              team.Act(id, {action.data(), static_cast<std::size_t>(action.size())});
@@ -198,7 +233,17 @@ void BindTeamEnv(py::module_& module) {
       .def_property_readonly("failure", &TeamEnv::failure)
       .def("record", [](TeamEnv& team, const std::optional<std::string>& out,
                         bool force) { return Compute([&] { return team.Record(out, force); }); })
+      .def("view",
+           [](TeamEnv& team, const std::string& at, double pace) {
+             return Compute([&] {
+               return team.View({.at = ReadLiveAddress(at, "at"),
+                                 .pace = pace,
+                                 .may_wait = MayWait,
+                                 .log = [](const std::string& line) { fmt::print(stderr, "mascot: {}\n", line); }});
+             });
+           })
       .def("finish", [](TeamEnv& team) { Compute([&] { team.Finish(); }); })
+      .def("close", [](TeamEnv& team) { Compute([&] { team.Close(); }); })
       .def("save", &TeamEnv::Save)
       .def("restore",
            [](TeamEnv& team, const Episodes::Snapshot& snapshot) { Compute([&] { team.Restore(snapshot); }); });
@@ -344,21 +389,6 @@ void BindPolicy(py::module_& module) {
 }
 
 // --- whole runs -----------------------------------------------------------------------------------------
-
-/// Whether Python has a signal to handle, such as Ctrl-C: looks a few times a second.
-class Signals {
- public:
-  bool AreThere() {
-    const auto now = std::chrono::steady_clock::now();
-    if (now < next_) return false;
-    next_ = now + std::chrono::milliseconds(50);
-    const py::gil_scoped_acquire acquire;
-    return PyErr_CheckSignals() != 0;  // then it has set what the handler has raised
-  }
-
- private:
-  std::chrono::steady_clock::time_point next_ = {};
-};
 
 /// Flies an experiment by its own laws, and records it. Returns the run's folder.
 std::string Fly(const std::string& path, const Sets& sets, const std::optional<std::string>& out, bool force) {

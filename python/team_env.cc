@@ -179,9 +179,30 @@ std::string TeamEnv::Record(const std::optional<std::string>& out, bool force) {
   if (record_ != nullptr && !record_->is_complete())
     throw ConfigError({"expected one recording at a time, got another one before the episode of the last is over"});
   auto record = std::make_unique<EpisodeRecord>(out, experiment(), force);
-  episodes_.SetWitness(record.get());
-  record_ = std::move(record);
+  record_.swap(record);
+  TellWitnesses();
   return record_->folder().string();
+}
+
+std::string TeamEnv::View(const EpisodeView::Options& options) {
+  if (view_ != nullptr && !view_->has_ended())
+    throw ConfigError({"expected one page at a time, got another one beside " + view_->url()});
+  view_ = std::make_unique<EpisodeView>(experiment(), options);
+  TellWitnesses();
+  return view_->url();
+}
+
+void TeamEnv::Close() {
+  Finish();
+  view_.reset();
+  TellWitnesses();
+}
+
+void TeamEnv::TellWitnesses() {
+  std::vector<EpisodeWitness*> witnesses;  // who records comes first: viewers may make all others wait
+  if (record_ != nullptr) witnesses.push_back(record_.get());
+  if (view_ != nullptr) witnesses.push_back(view_.get());
+  episodes_.SetWitnesses(std::move(witnesses));
 }
 
 void TeamEnv::Restore(const Episodes::Snapshot& snapshot) {

@@ -11,6 +11,7 @@
 #include "agent/laws/parts/observation.h"
 #include "base/random.h"
 #include "orchestrator/engines/episodes.h"
+#include "orchestrator/live/shown/episode_view.h"
 #include "orchestrator/report/episode_record.h"
 
 namespace mascot {
@@ -67,8 +68,8 @@ class TeamEnv {
   double disagreement_m() const;
   /// Whether the k-th agent is lost, or was in this episode: no agent comes back.
   bool is_lost(std::size_t k) const { return is_lost_[k] != 0; }
-  /// Whether this is the last tick of run.duration_s.
-  bool is_at_end() const { return episodes_.tick() == experiment().ticks(); }
+  /// Whether the episode ended in order: at the last tick of run.duration_s, or where a viewer has stopped it.
+  bool is_at_end() const { return episodes_.is_over() && episodes_.failure().empty(); }
   bool is_over() const { return episodes_.is_over(); }
   /// Why the episode ended before its time; empty: it has not.
   const std::string& failure() const { return episodes_.failure(); }
@@ -76,8 +77,13 @@ class TeamEnv {
   /// Records the next episode that leaves its tick 0, this one if it has not, in the folder `out` (RunFolder), which it
   /// returns. Throws ConfigError.
   std::string Record(const std::optional<std::string>& out, bool force);
+  /// Shows this episode, if it has not left its tick 0, and the next ones on a page; returns its address. While viewers
+  /// pause an episode, Step() waits. Throws ConfigError, also if there is a page already.
+  std::string View(const EpisodeView::Options& options);
   /// Ends the episode at this tick, so that its recording is complete.
   void Finish() { episodes_.Finish(); }
+  /// Finish(), and ends the page.
+  void Close();
   Episodes::Snapshot Save() const { return episodes_.Save(); }
   /// Throws what Reset() throws.
   void Restore(const Episodes::Snapshot& snapshot);
@@ -88,7 +94,10 @@ class TeamEnv {
   /// Takes in how the team is at this tick.
   void Look();
 
+  void TellWitnesses();
+
   std::unique_ptr<EpisodeRecord> record_;
+  std::unique_ptr<EpisodeView> view_;
   Episodes episodes_;
   std::size_t agents_of_team_ = 0;
   std::vector<int> ids_;

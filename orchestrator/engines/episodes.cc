@@ -49,6 +49,8 @@ bool TakesActionsAsItIs(const std::string& text, const std::string& path, std::s
 
 }  // namespace
 
+bool EpisodeWitness::Await(Episodes& /*episodes*/) { return true; }
+
 Episodes::Episodes(std::string text, std::string path, std::vector<Override> overrides, Crew& crew)
     : text_(std::move(text)), path_(std::move(path)), overrides_(std::move(overrides)), crew_(crew) {
   if (!TakesActionsAsItIs(text_, path_, overrides_)) overrides_.insert(overrides_.begin(), DrivenLaw(text_, path_));
@@ -86,6 +88,7 @@ void Episodes::Reset(std::vector<Override> changes) {
   result_ = {};
   result_.startup_s = std::chrono::duration<double>(began_ - launched).count();
   is_over_ = false;
+  restored_to_ = 0;
   Sense();
 }
 
@@ -99,15 +102,23 @@ void Episodes::Sense() {
   }
 }
 
-void Episodes::AskWitness() {
-  const std::vector<RowSink*> sinks = next_witness_->Begin(*experiment_);
-  if (sinks.empty()) return;
-  witness_ = next_witness_;
-  feed_.emplace(*experiment_, sinks);
+void Episodes::AskWitnesses() {
+  std::vector<RowSink*> sinks;
+  for (EpisodeWitness* const witness : next_witnesses_) {
+    const std::vector<RowSink*> its_sinks = witness->Begin(*experiment_);
+    if (its_sinks.empty()) continue;
+    witnesses_.push_back(witness);
+    sinks.insert(sinks.end(), its_sinks.begin(), its_sinks.end());
+  }
+  if (!sinks.empty()) feed_.emplace(*experiment_, sinks);
+}
+
+bool Episodes::Await() {
+  return std::ranges::all_of(witnesses_, [this](EpisodeWitness* witness) { return witness->Await(*this); });
 }
 
 void Episodes::Answer() try {
-  if (flight_->tick() == 0 && next_witness_ != nullptr) AskWitness();
+  if (flight_->tick() == 0) AskWitnesses();
   const DecodedRow& row = flight_->Exchange();
   if (feed_) feed_->Add(flight_->tick(), row);
 } catch (const std::exception& failure) {
@@ -119,10 +130,10 @@ void Episodes::Answer() try {
 void Episodes::End() {
   is_over_ = true;
   feed_.reset();
-  if (witness_ == nullptr) return;
+  if (witnesses_.empty()) return;
   result_.wall_s = std::chrono::duration<double>(Clock::now() - began_).count();
   result_.contacts = flight_->contacts();
-  std::exchange(witness_, nullptr)->End(result_);
+  for (EpisodeWitness* const witness : std::exchange(witnesses_, {})) witness->End(result_);
 }
 
 void Episodes::Act(int id, std::span<const double> action) {
@@ -139,16 +150,22 @@ void Episodes::Take(const std::string& toml) {
   const Event event = EventFrom(tick() + 1, toml, experiment_->size(), kByHand);
   if (StandsElsewhere(toml))
     throw std::invalid_argument(std::string(kByHand) + ": expected keys of [[events]], got what no file has there");
+  Take(event);
+}
+
+void Episodes::Take(Event event) {
+  event.tick = tick() + 1;
   LiveExperiment live = flight_->Ahead();
   live.CheckAll();
   live.Take(event);
-  flight_->Take(event);
-  history_.events.push_back({event.tick, toml});
+  history_.events.push_back({event.tick, event.Toml()});
+  flight_->Take(std::move(event));
 }
 
 void Episodes::Step() {
   if (is_over_) throw std::runtime_error("the episode is over: expected a reset");
   Answer();
+  if (!Await()) return End();
   flight_->Step();
   Sense();
   if (is_over_ || tick() < experiment_->ticks()) return;
@@ -158,7 +175,7 @@ void Episodes::Step() {
 
 void Episodes::Finish() {
   if (flight_ == nullptr || is_over_) return;
-  if (witness_ == nullptr) return End();
+  if (witnesses_.empty()) return End();
   try {
     Answer();
     End();
@@ -178,6 +195,7 @@ void Episodes::Restore(const Snapshot& snapshot, const std::function<void()>& lo
   if (snapshot.of != identity_)
     throw std::invalid_argument("expected a snapshot of the same file, with the same keys set, got one of another");
   Reset(snapshot.changes);
+  restored_to_ = snapshot.tick;
   look();
   auto event = snapshot.events.begin();
   auto given = snapshot.given.begin();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/crew.h"
@@ -19,6 +20,8 @@
 
 namespace mascot {
 
+class Episodes;
+
 /// Sees episodes: records them, or shows them.
 class EpisodeWitness {
  public:
@@ -26,6 +29,9 @@ class EpisodeWitness {
   /// An episode leaves its tick 0. Returns the sinks that get its rows; none: it passes over this episode, without an
   /// End(). `experiment` lives until End() has returned.
   virtual std::vector<RowSink*> Begin(const Experiment& experiment) = 0;
+  /// The sinks have got the row of a tick that is not the last. May wait until it is time for the next, and give events
+  /// to `episodes`. Returns false if the episode is to end at this tick.
+  virtual bool Await(Episodes& episodes);
   /// The episode is over. Its failure, if it has one, says why it ended early.
   virtual void End(const EngineResult& result) = 0;
 };
@@ -43,9 +49,9 @@ class Episodes {
   Episodes(const Episodes&) = delete;
   Episodes& operator=(const Episodes&) = delete;
 
-  /// From the next episode that leaves its tick 0 on, `witness` sees the episodes; null: nobody does. It must live as
-  /// long as it is asked, and until the End() of the last one.
-  void SetWitness(EpisodeWitness* witness) { next_witness_ = witness; }
+  /// From the next episode that leaves its tick 0 on, `witnesses` see the episodes. They must live as long as they are
+  /// asked, and until the End() of the last one.
+  void SetWitnesses(std::vector<EpisodeWitness*> witnesses) { next_witnesses_ = std::move(witnesses); }
 
   /// Ends the episode, and begins one of the experiment with `changes` beside the overrides. It is read again only if
   /// they differ from those before. Throws as the constructor does; then the episode before has ended, and stays.
@@ -59,9 +65,11 @@ class Episodes {
   const DecodedRow& row() const { return *row_; }
   /// Agent `id`, which has measured and heard what is to be known at this tick, unless it is lost.
   const Agent& agent(int id) const { return flight_->agent(id); }
-  /// Whether the episode is over: this is its last tick, or it cannot go on.
+  /// The pace that an event of this tick has set; nullopt: none has.
+  std::optional<double> new_pace() const { return flight_->new_pace(); }
+  /// Whether the episode is over: this is its last tick, it cannot go on, or a witness has ended it.
   bool is_over() const { return is_over_; }
-  /// Why the episode cannot go on, in words; empty: it can, or this is its last tick.
+  /// Why the episode cannot go on, in words; empty: it can, or it ended in order.
   const std::string& failure() const { return result_.failure; }
 
   /// What agent `id` is to do from this tick on, as Flight::Act() takes it. Throws std::invalid_argument, also if there
@@ -70,11 +78,13 @@ class Episodes {
   /// An event by hand at the next tick: the keys of [[events]] but at_s, as TOML ("set = {...}"). Throws ConfigError or
   /// std::invalid_argument, and changes nothing, if it is not legal, or if the episode is over.
   void Take(const std::string& toml);
-  /// Goes on to the next tick. If an agent is lost and that ends the run, the episode is over. Throws
-  /// std::runtime_error if a law fails, which ends the episode, too, or if the episode is over already.
+  void Take(Event event);
+  /// Goes on to the next tick, if no witness ends the episode at this one. If an agent is lost and that ends the run,
+  /// the episode is over. Throws std::runtime_error if a law fails, which ends the episode, too, or if the episode is
+  /// over already.
   void Step();
-  /// Ends the episode at this tick, if it is not over. The witness gets what its agents answer, or why a law fails.
-  /// Throws what the witness throws.
+  /// Ends the episode at this tick, if it is not over. Witnesses get what its agents answer, or why a law fails. Throws
+  /// what they throw.
   void Finish();
 
   /// An episode so far: flying again all that was given to it leads to the same tick, and to the same bits.
@@ -100,12 +110,16 @@ class Episodes {
   /// std::invalid_argument, and changes nothing, if the snapshot is of another experiment; and what Reset(), Step() and
   /// `look` throw.
   void Restore(const Snapshot& snapshot, const std::function<void()>& look);
+  /// Whether Restore() is flying: then nobody is to wait.
+  bool is_restoring() const { return tick() < restored_to_; }
 
  private:
   Experiment Load(std::span<const Override> changes) const;
   void Sense();
-  void AskWitness();
-  /// Lets the agents answer this tick, and hands the row to the witness.
+  void AskWitnesses();
+  /// Lets the witnesses wait. Returns whether the episode goes on.
+  bool Await();
+  /// Lets the agents answer this tick, and hands the row to the witnesses.
   void Answer();
   void End();
 
@@ -113,13 +127,14 @@ class Episodes {
   std::vector<Override> overrides_;
   std::uint64_t identity_ = 0;  // Snapshot::of
   Crew& crew_;
-  EpisodeWitness* next_witness_ = nullptr;
-  EpisodeWitness* witness_ = nullptr;             // of this episode
+  std::vector<EpisodeWitness*> next_witnesses_;
+  std::vector<EpisodeWitness*> witnesses_;        // of this episode
   std::shared_ptr<const Experiment> experiment_;  // shared while Reset() makes the next flight
   std::unique_ptr<Flight> flight_;
-  std::optional<RowFeed> feed_;  // to the witness
+  std::optional<RowFeed> feed_;  // to the witnesses
   const DecodedRow* row_ = nullptr;
   bool is_over_ = false;
+  std::int64_t restored_to_ = 0;  // the tick of Restore()
   EngineResult result_;
   std::chrono::steady_clock::time_point began_;
   Snapshot history_;

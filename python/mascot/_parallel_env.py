@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import webbrowser
 from typing import Any, Callable, Mapping
 
 import numpy as np
@@ -171,12 +172,26 @@ class ParallelEnv(_Base):
         force: replace the files of an earlier run in this folder."""
         self._team.record(_core.path_of(folder), force)
 
+    def view(self, at: str = "127.0.0.1:8765", *, pace: float = 1.0, browser: bool | None = None) -> str:
+        """Shows the next episode that begins to move, this one if it is at its start, and those after it on a page, until
+        close(). Returns its address. Viewers may pause the episode, slow it down, give events and stop it: step() waits for
+        them. An episode that they stop is truncated.
+
+        at: where the page is, as for `orchestrator up --view`: "ADDRESS:PORT", "ADDRESS" or ":PORT". Whoever reaches the
+            address may watch and steer. If the port is taken, the page takes the next one that is free.
+        pace: simulated seconds a second, unless the file has run.pace; 0: as fast as it goes. Viewers may change it.
+        browser: whether to open the page in a browser; None: where there is a display."""
+        address = self._team.view(at, float(pace))
+        if browser or (browser is None and ("DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ)):
+            webbrowser.open(address)
+        return address
+
     def render(self) -> None:
-        """Nothing: record() and `orchestrator view` show an episode."""
+        """Nothing: view() shows episodes."""
 
     def close(self) -> None:
-        """Ends the episode, and completes its recording."""
-        self._team.finish()
+        """Ends the episode, completes its recording, and ends the page."""
+        self._team.close()
         self.agents = []
 
     def _begin(self) -> None:

@@ -1,14 +1,20 @@
 #!/usr/bin/python3
 """parallel_env(): PettingZoo's rules, what agents observe, rewards, losses, events, seeds, words of errors."""
 
+import inspect
+import os
 import pickle
 import signal
+import subprocess
+import sys
 import threading
+import time
 import unittest
+import urllib.request
 
 import numpy as np
 import support
-from support import LEADERLESS, TestCase, mascot
+from support import BINARIES, LEADERLESS, TestCase, mascot, orchestrator
 
 SHORT = {"run.duration_s": 0.5}
 LOST = """
@@ -403,6 +409,102 @@ class Mistakes(TestCase):
         text = second_with('name = "custom", python = "def control(t, me, neighbours): return [0, 0]"')
         self.expect("a law in Python does not fly inside of another program in Python",
                     lambda: mascot.parallel_env(self.write(text)), RuntimeError)
+
+
+def interrupt_a_step():
+    """Ctrl-C as soon as the main thread is in the C++ part of step()."""
+    lines, first = inspect.getsourcelines(mascot.ParallelEnv.step)
+    line = first + next(k for k, text in enumerate(lines) if "self._team.step(" in text)
+    deadline = time.monotonic() + 30
+    while time.monotonic() < deadline:
+        frame = sys._current_frames()[threading.main_thread().ident]
+        if (frame.f_code, frame.f_lineno) == (mascot.ParallelEnv.step.__code__, line):
+            signal.raise_signal(signal.SIGINT)
+            return
+
+
+class Pages(TestCase):
+    def test_an_episode_is_on_a_page_until_the_environment_is_closed(self):
+        env = team()
+        address = env.view(":0", pace=0, browser=False)
+        self.assertRegex(address, r"^http://127\.0\.0\.1:\d+$")
+        self.assertIn("<title>", self.read(address))
+        env.reset(seed=3)
+        env.step(still(env))
+        self.assertIn("<title>", self.read(address))
+        env.close()
+        with self.assertRaises(OSError):
+            self.read(address)
+
+    def test_viewed_and_recorded_it_flies_as_otherwise(self):
+        paths = []
+        for is_seen in (False, True):
+            env = team(dtype="float64")
+            if is_seen:
+                env.view(":0", pace=0, browser=False)
+                env.record("seen")
+            env.reset(seed=3)
+            path = [env.state()]
+            while env.agents:
+                env.step({a: [1, 0.5, 0] for a in env.agents})
+                path.append(env.state())
+            env.close()
+            paths.append(path)
+        np.testing.assert_array_equal(*paths)
+        np.testing.assert_array_equal(mascot.load("seen")["position"], np.array(paths[0])[:, :, :3])
+        self.assertIn("the same, bit for bit: 51 ticks", orchestrator("verify", "seen"))
+
+    def test_ctrl_c_ends_the_wait_for_viewers(self):
+        env = team()
+        env.view(":0", pace=1e-6, browser=False)  # 10000 s a tick
+        env.reset()
+        interrupts = threading.Thread(target=interrupt_a_step)
+        interrupts.start()
+        with self.assertRaises(KeyboardInterrupt):
+            env.step(still(env))
+        interrupts.join(60)
+        self.assertEqual(env.time_s, 0.01)  # the step is made
+        env.close()
+
+    def test_the_browser_is_that_of_the_user(self):
+        self.write("#!/bin/sh\necho \"$1\" > opened\n", "browser")
+        os.chmod("browser", 0o755)
+        code = ("import mascot\n"
+                f"env = mascot.parallel_env({LEADERLESS!r})\n"
+                "print(env.view(':0', browser={browser}))")
+        env = {**os.environ, "BROWSER": os.path.abspath("browser") + " %s", "PYTHONPATH": str(BINARIES / "python")}
+        env.pop("WAYLAND_DISPLAY", None)
+        for browser, display, opens in (("True", None, True), ("None", ":7", True), ("None", None, False),
+                                        ("False", ":7", False)):
+            env.pop("DISPLAY", None)
+            if display:
+                env["DISPLAY"] = display
+            done = subprocess.run([sys.executable, "-c", code.format(browser=browser)], env=env, check=True, timeout=60,
+                                  stdout=subprocess.PIPE, text=True)
+            self.assertEqual(os.path.exists("opened"), opens)
+            if opens:
+                with open("opened", encoding="utf8") as opened:
+                    self.assertEqual(opened.read(), done.stdout)
+                os.remove("opened")
+
+    def test_what_cannot_be_is_refused(self):
+        env = team()
+        expect = self.assertRaisesRegex
+        with expect(mascot.ConfigError, "^at: expected .*port"):
+            env.view("127.0.0.1:port", browser=False)
+        with expect(ValueError, "^pace: expected a number in .*, got -1.0$"):
+            env.view(":0", pace=-1, browser=False)
+        address = env.view(":0", browser=False)
+        with expect(mascot.ConfigError, f"^expected one page at a time, got another one beside {address}$"):
+            env.view(":0", browser=False)
+        env.close()
+        env.view(":0", browser=False)
+
+    @staticmethod
+    def read(address):
+        # No proxy of the environment is asked for an address of this machine.
+        with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(address, timeout=20) as answer:
+            return answer.read().decode()
 
 
 class TwoAtOnce(TestCase):

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -62,7 +63,7 @@ TEST(Episodes, AreTheFlightsOfTheEngine) {
                 .failure,
             "");
   Episodes episodes(TwoOf(), "pair.toml", {});
-  episodes.SetWitness(&seen);
+  episodes.SetWitnesses({&seen});
   Fly(episodes, waves, 50);
   EXPECT_TRUE(episodes.is_over());
   EXPECT_THAT(seen.failures, ElementsAre(""));
@@ -112,7 +113,7 @@ TEST(Episodes, AreSeenFromTheirStartOnIfTheyMove) {
   Waves waves(1);
   Episodes episodes(TwoOf(), "pair.toml", {});
   Fly(episodes, waves, 1);
-  episodes.SetWitness(&seen);  // this one has moved already
+  episodes.SetWitnesses({&seen});  // this one has moved already
   Fly(episodes, waves, 5);
   for (const char* const seed : {"2", "3"}) episodes.Reset({{.key = "run.seed", .value = seed}});  // 2 does not move
   Fly(episodes, waves, 3);
@@ -120,6 +121,100 @@ TEST(Episodes, AreSeenFromTheirStartOnIfTheyMove) {
   EXPECT_THAT(seen.begun, ElementsAre(3u));
   EXPECT_THAT(seen.ticks, ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(seen.failures, ElementsAre(""));
+}
+
+/// Counts how often it is asked to wait, and does then what a test says.
+class Waits final : public EpisodeWitness {
+ public:
+  explicit Waits(Seen& seen, std::function<bool(Episodes&)> await) : seen_(seen), await_(std::move(await)) {}
+  std::vector<RowSink*> Begin(const Experiment& /*experiment*/) override { return {&seen_}; }
+  bool Await(Episodes& episodes) override {
+    at.push_back(episodes.tick());
+    return await_(episodes);
+  }
+  void End(const EngineResult& result) override { seen_.End(result); }
+  std::vector<std::int64_t> at;
+
+ private:
+  Seen& seen_;
+  const std::function<bool(Episodes&)> await_;
+};
+
+TEST(Episodes, WitnessesWaitAfterTheRowOfATickAndSeeTheSame) {
+  Seen recorded, shown;
+  Waits waits(shown, [&](Episodes& episodes) {
+    EXPECT_EQ(recorded.ticks.back(), episodes.tick());
+    EXPECT_EQ(shown.ticks.back(), episodes.tick());
+    return true;
+  });
+  Waves waves(1);
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  episodes.SetWitnesses({&recorded, &waits});
+  Fly(episodes, waves, 50);
+  EXPECT_EQ(waits.at.size(), 50u);  // not after the last
+  EXPECT_EQ(shown.rows, recorded.rows);
+  EXPECT_THAT(shown.failures, ElementsAre(""));
+  EXPECT_THAT(recorded.failures, ElementsAre(""));
+}
+
+TEST(Episodes, AnEventOfAWitnessIsOneOfTheEpisode) {
+  Seen seen;
+  Waits gives(seen, [](Episodes& episodes) {
+    if (episodes.tick() == 9)
+      episodes.Take(EventFrom(0, "set = { 'control.max_acceleration_m_per_s2' = 0.2 }", 2, "test"));
+    return true;
+  });
+  Waves waves(1);
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  episodes.SetWitnesses({&gives});
+  Fly(episodes, waves, 9);
+  episodes.Take("cut = [[1, 2]]");
+  Fly(episodes, waves, 10);
+  EXPECT_EQ(episodes.now().agent(1).control.max_acceleration_m_per_s2, 0.2);
+  EXPECT_EQ(episodes.row().events.size(), 2u);
+  Fly(episodes, waves, 30);
+  const Eigen::Vector3d there = episodes.row().motions[1].p_WB;
+  const Episodes::Snapshot snapshot = episodes.Save();
+  episodes.SetWitnesses({});
+  episodes.Restore(snapshot, [] {});
+  EXPECT_EQ(episodes.row().motions[1].p_WB, there);
+}
+
+TEST(Episodes, AWitnessMayEndThem) {
+  Seen seen;
+  Waits ends(seen, [](Episodes& episodes) { return episodes.tick() < 4; });
+  Waves waves(1);
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  episodes.SetWitnesses({&ends});
+  Fly(episodes, waves, 4);
+  EXPECT_FALSE(episodes.is_over());
+  episodes.Step();
+  EXPECT_TRUE(episodes.is_over());
+  EXPECT_EQ(episodes.failure(), "");
+  EXPECT_EQ(episodes.tick(), 4);
+  EXPECT_THAT(seen.ticks, ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(seen.failures, ElementsAre(""));
+  episodes.Reset({});
+  Fly(episodes, waves, 1);
+  EXPECT_THAT(seen.ticks, ElementsAre(0, 1, 2, 3, 4, 0));
+}
+
+TEST(Episodes, WitnessesKnowThatOneIsRestored) {
+  Seen seen;
+  std::vector<std::int64_t> restored;
+  Waits notes(seen, [&](Episodes& episodes) {
+    if (episodes.is_restoring()) restored.push_back(episodes.tick());
+    return true;
+  });
+  Waves waves(1);
+  Episodes episodes(TwoOf(), "pair.toml", {});
+  Fly(episodes, waves, 3);
+  const Episodes::Snapshot snapshot = episodes.Save();
+  episodes.SetWitnesses({&notes});
+  episodes.Restore(snapshot, [] {});
+  Fly(episodes, waves, 6);
+  EXPECT_THAT(restored, ElementsAre(0, 1, 2));
+  EXPECT_THAT(notes.at, ElementsAre(0, 1, 2, 3, 4, 5));
 }
 
 TEST(Episodes, ThatAreOverAreNotStepped) {
@@ -133,7 +228,7 @@ TEST(Episodes, ALossThatEndsTheRunEndsThem) {
   Seen seen;
   Episodes episodes(TwoOf("name = 'actions'\n", "[[events]]\nat_s = 0.1\nfault = { agent = 2, kind = 'kill' }\n"),
                     "pair.toml", {});
-  episodes.SetWitness(&seen);
+  episodes.SetWitnesses({&seen});
   Waves waves(1);
   while (!episodes.is_over()) Fly(episodes, waves, episodes.tick() + 1);
   EXPECT_EQ(episodes.tick(), 10);
@@ -145,7 +240,7 @@ TEST(Episodes, ALossThatEndsTheRunEndsThem) {
 TEST(Episodes, ALawThatFailsIsToldAndAnotherEpisodeMayFollow) {
   Seen seen;
   Episodes episodes(TwoOf(), "pair.toml", {});
-  episodes.SetWitness(&seen);
+  episodes.SetWitnesses({&seen});
   episodes.Act(1, std::vector{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
   EXPECT_THAT([&] { episodes.Step(); }, ThrowsMessage<std::runtime_error>(HasSubstr("agent 1")));
   EXPECT_TRUE(episodes.is_over());
