@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -264,22 +265,25 @@ std::pair<py::array, TeamVector::Observations> NewObservations(const TeamVector&
   return in_floats ? NewObservations<float>(vector) : NewObservations<double>(vector);
 }
 
-/// How the environments ended, or not, with the last step: disagreement, terminated, truncated, reset at this step, and
-/// whether some agent is lost.
-py::tuple EndsOf(const TeamVector& vector) {
+/// What the last step has led to: `observations`, disagreement, terminated, truncated, reset at this step; then whether
+/// there are environments of the last three kinds, and whether some agent is lost.
+py::tuple OutcomeOf(const TeamVector& vector, py::array observations) {
   const auto envs = Count(vector.size());
   py::array_t<double> disagreement(envs);
   py::array_t<bool> terminated(envs), truncated(envs), was_reset(envs);
-  bool any_is_lost = false;
+  bool any_is_over = false, any_was_reset = false, any_is_lost = false;
   for (std::size_t env = 0; env < vector.size(); ++env) {
     const TeamVector::Reached& reached = vector.reached(env);
     disagreement.mutable_data()[env] = reached.disagreement_m;
     terminated.mutable_data()[env] = reached.terminated;
     truncated.mutable_data()[env] = reached.truncated;
     was_reset.mutable_data()[env] = reached.was_reset;
+    any_is_over = any_is_over || reached.terminated || reached.truncated;
+    any_was_reset = any_was_reset || reached.was_reset;
     any_is_lost = any_is_lost || reached.any_is_lost;
   }
-  return py::make_tuple(disagreement, terminated, truncated, was_reset, any_is_lost);
+  return py::make_tuple(std::move(observations), disagreement, terminated, truncated, was_reset, any_is_over,
+                        any_was_reset, any_is_lost);
 }
 
 /// The true states of the teams of all environments at the tick that the last step has reached.
@@ -333,11 +337,12 @@ void BindTeamVector(py::module_& module) {
            [](TeamVector& vector, const Doubles& actions, bool in_floats) {
              const TeamEnv& team = vector.first();
              const auto numbers = Numbers(actions, vector.size() * team.agents().size() * team.action_size());
-             const auto observations = NewObservations(vector, in_floats);
+             if (!std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); }))
+               throw py::value_error("actions: expected finite numbers");
+             auto observations = NewObservations(vector, in_floats);
              Compute([&] { vector.Step(numbers, observations.second); });
-             return observations.first;
+             return OutcomeOf(vector, std::move(observations.first));
            })
-      .def("ends", &EndsOf)
       .def("reached_states", &ReachedStates)
       .def("reached_losses", &ReachedLosses)
       .def("final_observations", &FinalObservations)

@@ -94,8 +94,8 @@ std::vector<double> ObservationHigh(const Experiment& experiment, const Observat
 
 }  // namespace
 
-TeamEnv::TeamEnv(std::string text, std::string path, std::vector<Override> overrides)
-    : episodes_(std::move(text), std::move(path), std::move(overrides)) {
+TeamEnv::TeamEnv(std::string text, std::string path, std::vector<Override> overrides, Episodes::Keeps keeps)
+    : episodes_(std::move(text), std::move(path), std::move(overrides), keeps) {
   ids_ = AgentsThatAct(experiment());
   for (const int id : ids_) {
     high_.push_back(ActionHigh(experiment().agent(id)));

@@ -22,7 +22,8 @@ namespace mascot {
 class TeamEnv {
  public:
   /// As Episodes. Throws ConfigError, also if nobody takes actions.
-  TeamEnv(std::string text, std::string path, std::vector<Override> overrides);
+  TeamEnv(std::string text, std::string path, std::vector<Override> overrides,
+          Episodes::Keeps keeps = Episodes::Keeps::kHistory);
 
   /// The agents that take actions, by increasing id: the others fly by laws of their own.
   const std::vector<int>& agents() const { return ids_; }

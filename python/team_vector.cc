@@ -15,13 +15,26 @@ bool IsTerminated(const TeamEnv& env) {
   return true;
 }
 
-/// Calls work(env) for all environments, in threads: each takes the next one when it is free.
+/// Calls work(env) for all environments, in threads. Each thread begins with those that it had the last time, which are
+/// in the caches of its core, and then helps the others.
 template <class Work>
 void TeamVector::ForEach(const Work& work) {
-  std::atomic<std::size_t> next = 0;
-  crew_.Do(static_cast<std::size_t>(crew_.members()), [&](std::size_t) {
+  struct alignas(64) Share {
+    std::atomic<std::size_t> next = 0;
+    std::size_t end = 0;
+  };
+  const auto threads = static_cast<std::size_t>(crew_.members());
+  std::vector<Share> shares(threads);
+  for (std::size_t k = 0; k < threads; ++k) {
+    shares[k].next = k * envs_.size() / threads;
+    shares[k].end = (k + 1) * envs_.size() / threads;
+  }
+  crew_.Do(threads, [&](std::size_t thread) {
     const SameFloatingPoint same;
-    for (std::size_t env = next++; env < envs_.size(); env = next++) work(env);
+    for (std::size_t k = 0; k < threads; ++k) {
+      Share& share = shares[(thread + k) % threads];
+      for (std::size_t env = share.next++; env < share.end; env = share.next++) work(env);
+    }
   });
 }
 
@@ -32,7 +45,9 @@ TeamVector::TeamVector(const std::string& text, const std::string& path, const s
       keeps_states_(keeps_states),
       envs_(static_cast<std::size_t>(count)),
       reached_(envs_.size()) {
-  ForEach([&](std::size_t env) { envs_[env] = std::make_unique<TeamEnv>(text, path, overrides); });
+  ForEach([&](std::size_t env) {
+    envs_[env] = std::make_unique<TeamEnv>(text, path, overrides, Episodes::Keeps::kNothing);
+  });
   all_given_.assign(first().agents().size(), 1);
 }
 

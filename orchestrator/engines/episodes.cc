@@ -51,8 +51,8 @@ bool TakesActionsAsItIs(const std::string& text, const std::string& path, std::s
 
 bool EpisodeWitness::Await(Episodes& /*episodes*/) { return true; }
 
-Episodes::Episodes(std::string text, std::string path, std::vector<Override> overrides, Crew& crew)
-    : text_(std::move(text)), path_(std::move(path)), overrides_(std::move(overrides)), crew_(crew) {
+Episodes::Episodes(std::string text, std::string path, std::vector<Override> overrides, Keeps keeps)
+    : text_(std::move(text)), path_(std::move(path)), overrides_(std::move(overrides)), keeps_(keeps) {
   if (!TakesActionsAsItIs(text_, path_, overrides_)) overrides_.insert(overrides_.begin(), DrivenLaw(text_, path_));
   std::string all = text_;
   for (const Override& override : overrides_) all += '\n' + override.key + " = " + override.value;
@@ -81,7 +81,7 @@ void Episodes::Reset(std::vector<Override> changes) {
   std::shared_ptr<const Experiment> experiment = experiment_;
   if (experiment == nullptr || !AreEqual(changes, history_.changes))
     experiment = std::make_shared<const Experiment>(Load(changes));
-  flight_ = std::make_unique<Flight>(*experiment, crew_);
+  flight_ = std::make_unique<Flight>(*experiment);
   experiment_ = std::move(experiment);
   history_ = {.changes = std::move(changes)};
   began_ = Clock::now();
@@ -140,6 +140,7 @@ void Episodes::Act(int id, std::span<const double> action) {
   if (id < 1 || id > experiment_->size())
     throw std::invalid_argument(fmt::format("expected an agent from 1 to {}, got {}", experiment_->size(), id));
   flight_->Act(id, action);
+  if (keeps_ == Keeps::kNothing) return;
   history_.given.push_back({.tick = tick(), .agent = id, .numbers = action.size()});
   history_.actions.insert(history_.actions.end(), action.begin(), action.end());
 }
@@ -158,7 +159,7 @@ void Episodes::Take(Event event) {
   LiveExperiment live = flight_->Ahead();
   live.CheckAll();
   live.Take(event);
-  history_.events.push_back({event.tick, event.Toml()});
+  if (keeps_ == Keeps::kHistory) history_.events.push_back({event.tick, event.Toml()});
   flight_->Take(std::move(event));
 }
 
@@ -185,6 +186,7 @@ void Episodes::Finish() {
 }
 
 Episodes::Snapshot Episodes::Save() const {
+  if (keeps_ == Keeps::kNothing) throw std::logic_error("a snapshot of episodes without a history");
   Snapshot snapshot = history_;
   snapshot.of = identity_;
   snapshot.tick = tick();

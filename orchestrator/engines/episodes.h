@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/crew.h"
 #include "experiment/experiment.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/engines/flight.h"
@@ -42,9 +41,11 @@ class EpisodeWitness {
 /// with its axes and its safety filter.
 class Episodes {
  public:
-  /// `text`, of the file at `path`, with `overrides`, is the experiment; `crew` computes it, and must outlive this
-  /// object. The first episode is at its tick 0. Throws ConfigError, and what laws throw when they are made.
-  Episodes(std::string text, std::string path, std::vector<Override> overrides, Crew& crew = Crew::Alone());
+  /// Whether Save() is wanted: what was given to an episode is kept for it.
+  enum class Keeps { kHistory, kNothing };
+  /// `text`, of the file at `path`, with `overrides`, is the experiment. The first episode is at its tick 0. Throws
+  /// ConfigError, and what laws throw when they are made.
+  Episodes(std::string text, std::string path, std::vector<Override> overrides, Keeps keeps = Keeps::kHistory);
   ~Episodes();
   Episodes(const Episodes&) = delete;
   Episodes& operator=(const Episodes&) = delete;
@@ -105,6 +106,7 @@ class Episodes {
     std::vector<double> actions = {};  ///< their numbers, one action after the other
     std::vector<GivenEvent> events = {};
   };
+  /// Throws std::logic_error if no history is kept.
   Snapshot Save() const;
   /// Ends the episode, and flies that of the snapshot up to its tick. `look` is called at each tick. Throws
   /// std::invalid_argument, and changes nothing, if the snapshot is of another experiment; and what Reset(), Step() and
@@ -126,7 +128,7 @@ class Episodes {
   const std::string text_, path_;
   std::vector<Override> overrides_;
   std::uint64_t identity_ = 0;  // Snapshot::of
-  Crew& crew_;
+  const Keeps keeps_;
   std::vector<EpisodeWitness*> next_witnesses_;
   std::vector<EpisodeWitness*> witnesses_;        // of this episode
   std::shared_ptr<const Experiment> experiment_;  // shared while Reset() makes the next flight

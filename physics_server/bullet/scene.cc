@@ -39,6 +39,13 @@ Scene::FixedBody Scene::MakeFixed(const Obstacle& obstacle, int user_index) {
   return body;
 }
 
+btDefaultCollisionConstructionInfo Scene::SmallPools() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = 64;
+  info.m_defaultMaxCollisionAlgorithmPoolSize = 64;
+  return info;
+}
+
 Scene::Scene(const Experiment& experiment) : do_agents_collide_(experiment.physics.collisions) {
   collision_.setPlaneConvexMultipointIterations();  // a box then stands on four points at once
   // Bullet's own algorithm for two spheres drops a contact as soon as they are apart: spheres that slide along each

@@ -40,6 +40,8 @@ class Scene {
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btRigidBody> rigid;
   };
+  /// Bullet's pools of contacts take 4 MB, which it clears at the start; it allocates what a pool does not have.
+  static btDefaultCollisionConstructionInfo SmallPools();
   static FixedBody MakeFixed(const Obstacle& obstacle, int user_index);
 
   bool do_agents_collide_;
@@ -47,7 +49,7 @@ class Scene {
   Ground ground_shape_;
   btRigidBody ground_{0, nullptr, &ground_shape_};
   std::vector<FixedBody> obstacles_;
-  btDefaultCollisionConfiguration collision_;
+  btDefaultCollisionConfiguration collision_{SmallPools()};
   btCollisionDispatcher dispatcher_{&collision_};
   btDbvtBroadphase broadphase_;
   btSequentialImpulseConstraintSolver solver_;

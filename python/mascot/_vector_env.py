@@ -89,7 +89,8 @@ class VectorEnv(_Base):
         self.single_action_space = box(np.stack(about["action_high"]), self._dtype)
         self.observation_space = _batch(self.single_observation_space, num_envs)
         self.action_space = _batch(self.single_action_space, num_envs)
-        self._needs_reset = np.ones(num_envs, bool)
+        self._needs_reset, self._some_need_reset = np.ones(num_envs, bool), True
+        self._shape = self.action_space.shape
 
     @property
     def observation_layout(self) -> dict[str, Any]:
@@ -114,6 +115,7 @@ class VectorEnv(_Base):
             seed = first
         observations = self._teams.reset(self._seeds(seed), changes, mask, self._in_floats)
         self._needs_reset &= ~mask
+        self._some_need_reset = bool(self._needs_reset.any())
         return observations, {}
 
     def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
@@ -124,22 +126,21 @@ class VectorEnv(_Base):
         infos: "lost" (num_envs, A), which agents are lost; "failure", why a run could not go on; if an episode has ended and
         autoreset_mode is SAME_STEP, "final_obs" and "final_info" of it."""
         actions = np.asarray(actions, dtype=float)
-        if actions.shape != self.action_space.shape:
-            raise ValueError(f"actions: expected the shape {self.action_space.shape}, got {actions.shape}")
-        if not np.isfinite(actions).all():
-            raise ValueError("actions: expected finite numbers")
-        if self._needs_reset.any():
+        if actions.shape != self._shape:
+            raise ValueError(f"actions: expected the shape {self._shape}, got {actions.shape}")
+        if self._some_need_reset:
             raise ValueError(f"expected a reset() of environment {int(self._needs_reset.argmax())} before this step")
-        observations = self._teams.step(actions, self._in_floats)
-        disagreement, terminations, truncations, was_reset, any_is_lost = self._teams.ends()
-        is_over = terminations | truncations
+        (observations, disagreement, terminations, truncations, was_reset, any_is_over, any_was_reset,
+         any_is_lost) = self._teams.step(actions, self._in_floats)
         rewards = -disagreement if self._reward is None else self._rewards(actions)
-        if self.autoreset_mode is AutoresetMode.NEXT_STEP:
+        if any_was_reset and self.autoreset_mode is AutoresetMode.NEXT_STEP:
             rewards[was_reset] = 0
-        elif self.autoreset_mode is AutoresetMode.DISABLED:
-            self._needs_reset = is_over
-        infos = self._infos(terminations, is_over) if any_is_lost or is_over.any() else {}
-        return observations, rewards, terminations, truncations, infos
+        if not any_is_over and not any_is_lost:
+            return observations, rewards, terminations, truncations, {}
+        is_over = terminations | truncations
+        if any_is_over and self.autoreset_mode is AutoresetMode.DISABLED:
+            self._needs_reset, self._some_need_reset = is_over, True
+        return observations, rewards, terminations, truncations, self._infos(terminations, is_over)
 
     def record(self, env: int, folder: str | os.PathLike[str], force: bool = False) -> None:
         """Records the next episode of environment `env` (from 0), as record() of `mascot.parallel_env()`."""

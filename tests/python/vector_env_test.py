@@ -186,7 +186,7 @@ class Mistakes(TestCase):
             ("seed: expected an integer in [0, 9223372036854775807], got -1", lambda: envs.reset(seed=[1, 2, -1])),
             ("reset_mask: expected 3 bools", lambda: envs.reset(options={"reset_mask": np.zeros(3, bool)})),
             ("actions: expected the shape (3, 4, 3), got (4, 3)", lambda: envs.step(zeros[0])),
-            ("actions: expected finite numbers", lambda: envs.step(zeros * np.nan)),
+            ("actions: expected finite numbers", lambda: (envs.reset(), envs.step(zeros * np.nan))),
         ]:
             with self.assertRaises(ValueError, msg=words) as caught:
                 call()

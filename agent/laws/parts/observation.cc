@@ -53,20 +53,22 @@ Observer::Observer(const Experiment& experiment, int id, const ObservationLayout
 }
 
 void Observer::Observe(const Motion& self, std::span<const Heard> heard, std::span<double> to) const {
-  std::ranges::fill(to, 0.0);
-  double* own = Put(self.v_WB, Put(self.p_WB, to.data()));
+  double* next = Put(self.v_WB, Put(self.p_WB, to.data()));
   const double sign = self.q_WB.w() < 0 ? -1 : 1;  // q and -q are the same attitude
-  for (const double part : {self.q_WB.x(), self.q_WB.y(), self.q_WB.z(), self.q_WB.w()}) *own++ = sign * part;
-  auto next = heard.begin();
-  for (std::size_t k = 0; k < ids_.size() && next != heard.end(); ++k) {
-    if (next->id != ids_[k]) continue;
-    double* place = own + k * (ObservationLayout::kOfNeighbour + layout_.message);
-    place = Put(next->motion.v_WB - self.v_WB, Put(next->motion.p_WB - self.p_WB, place));
-    *place++ = next->weight;
-    *place++ = 1;
-    *place++ = next->age_s;
-    std::ranges::copy(next->message.first(std::min(next->message.size(), layout_.message)), place);
-    ++next;
+  for (const double part : {self.q_WB.x(), self.q_WB.y(), self.q_WB.z(), self.q_WB.w()}) *next++ = sign * part;
+  auto one = heard.begin();
+  for (std::size_t k = 0; k < layout_.places; ++k) {
+    double* const end = next + ObservationLayout::kOfNeighbour + layout_.message;
+    if (k < ids_.size() && one != heard.end() && one->id == ids_[k]) {
+      next = Put(one->motion.v_WB - self.v_WB, Put(one->motion.p_WB - self.p_WB, next));
+      *next++ = one->weight;
+      *next++ = 1;
+      *next++ = one->age_s;
+      next = std::ranges::copy(one->message.first(std::min(one->message.size(), layout_.message)), next).out;
+      ++one;
+    }
+    std::fill(next, end, 0.0);
+    next = end;
   }
 }
 

@@ -91,6 +91,13 @@ TEST(Episodes, ThatAreRestoredAreTheSame) {
   EXPECT_EQ(episodes.row().motions[1].p_WB, end);
 }
 
+TEST(Episodes, ThatKeepNoHistoryAreNotSaved) {
+  Episodes episodes(TwoOf(), "pair.toml", {}, Episodes::Keeps::kNothing);
+  Waves waves(1);
+  Fly(episodes, waves, 3);
+  EXPECT_THAT([&] { episodes.Save(); }, ThrowsMessage<std::logic_error>("a snapshot of episodes without a history"));
+}
+
 TEST(Episodes, TheLawThatActionsDriveStandsInThePlaceOfTheTeams) {
   const Episodes episodes(TwoOf("name = 'flocking'\np_gain = 1\nsafety = { distance_m = 0.7 }\n"
                                 "[[agents.override]]\nid = 2\nlaw = { name = 'consensus' }\n"),
