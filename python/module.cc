@@ -7,12 +7,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +28,7 @@
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/recording/row_codec.h"
 #include "orchestrator/recording/run_arrays.h"
+#include "orchestrator/recording/run_folder.h"
 #include "python/team_env.h"
 #include "python/team_vector.h"
 
@@ -48,6 +51,48 @@ std::vector<Override> OverridesOf(const Sets& sets) {
 std::optional<std::vector<Override>> OverridesOf(const std::optional<Sets>& sets) {
   return sets ? std::optional(OverridesOf(*sets)) : std::nullopt;
 }
+
+/// An environment that one thread at a time may use.
+template <class Environment>
+struct OneAtATime : Environment {
+  using Environment::Environment;
+  std::atomic<bool> is_used = false;
+};
+
+/// A thread uses an environment.
+class Use {
+ public:
+  explicit Use(std::atomic<bool>& is_used) : is_used_(is_used) {
+    if (is_used.exchange(true)) throw std::runtime_error("expected one thread at a time in an environment, got two");
+  }
+  ~Use() { is_used_ = false; }
+  Use(const Use&) = delete;
+  Use& operator=(const Use&) = delete;
+
+ private:
+  std::atomic<bool>& is_used_;
+};
+
+/// A method for Python: calls method(environment, arguments...), if no other thread is in a method of the environment.
+template <class Environment, class Method, class Result, class First, class... Arguments>
+auto AloneAs(Method method, Result (Method::* /*signature*/)(First, Arguments...) const) {
+  return [method](OneAtATime<Environment>& environment, Arguments... arguments) -> Result {
+    const Use use(environment.is_used);
+    return method(environment, std::forward<Arguments>(arguments)...);
+  };
+}
+template <class Environment, class Method>
+auto Alone(Method method) {
+  return AloneAs<Environment>(method, &Method::operator());
+}
+template <class Environment, class Result, class First, class... Arguments>
+auto Alone(Result (*method)(First, Arguments...)) {
+  return Alone<Environment>(
+      [method](First first, Arguments... arguments) -> Result { return method(first, arguments...); });
+}
+
+/// What a folder is called that is given as `argument` of a function in Python.
+RunFolder::Words WordsFor(const std::string& argument) { return {.out = argument, .force = "force=True"}; }
 
 /// Calls work() without the lock of the interpreter, and with the arithmetic of our programs.
 template <class Work>
@@ -199,55 +244,56 @@ void BindTeamEnv(py::module_& module) {
       .def_readonly("tick", &Episodes::Snapshot::tick)
       .def(py::pickle(&StateOfSnapshot, &SnapshotOf));
 
-  py::class_<TeamEnv>(module, "TeamEnv")
+  using Env = OneAtATime<TeamEnv>;
+  const auto alone = [](auto method) { return Alone<TeamEnv>(method); };
+  py::class_<Env>(module, "TeamEnv")
       .def(py::init([](const std::string& path, const Sets& sets) {
-        return Compute(
-            [&] { return std::make_unique<TeamEnv>(ReadInput(path), NameOfInput(path), OverridesOf(sets)); });
+        return Compute([&] { return std::make_unique<Env>(ReadInput(path), NameOfInput(path), OverridesOf(sets)); });
       }))
-      .def("about", &AboutTeam)
-      .def("reset", [](TeamEnv& team, std::optional<std::uint64_t> seed,
-                       const std::optional<Sets>& sets) { Compute([&] { team.Reset(seed, OverridesOf(sets)); }); })
-      .def("step",
-           [](TeamEnv& team, const Doubles& actions, const Bools& given) {
+      .def("about", alone(&AboutTeam))
+      .def("reset", alone([](TeamEnv& team, std::optional<std::uint64_t> seed, const std::optional<Sets>& sets) {
+             Compute([&] { team.Reset(seed, OverridesOf(sets)); });
+           }))
+      .def("step", alone([](TeamEnv& team, const Doubles& actions, const Bools& given) {
              const auto numbers = Numbers(actions, team.agents().size() * team.action_size());
              const std::vector<char> which = CharsOf(given);
              ComputeOrWait([&] { team.Step(numbers, which); });
-           })
-      .def("go_on", [](TeamEnv& team) { ComputeOrWait([&] { team.Step(); }); })
-      .def("act",
-           [](TeamEnv& team, int id, const Doubles& action) {
+           }))
+      .def("go_on", alone([](TeamEnv& team) { ComputeOrWait([&] { team.Step(); }); }))
+      .def("act", alone([](TeamEnv& team, int id, const Doubles& action) {
              team.Act(id, {action.data(), static_cast<std::size_t>(action.size())});
-           })
-      .def("take", [](TeamEnv& team, const std::string& event) { Compute([&] { team.Take(event); }); })
-      .def("observations", &ObservationsOf)
-      .def("state", &StateOf)
-      .def("lost", &LostOf)
-      .def("perceived", &PerceivedBy)
-      .def("disagreement_m", &TeamEnv::disagreement_m)
-      .def_property_readonly("seed", &TeamEnv::seed)
-      .def_property_readonly("tick", [](const TeamEnv& team) { return team.episodes().tick(); })
+           }))
+      .def("take", alone([](TeamEnv& team, const std::string& event) { Compute([&] { team.Take(event); }); }))
+      .def("observations", alone(&ObservationsOf))
+      .def("state", alone(&StateOf))
+      .def("lost", alone(&LostOf))
+      .def("perceived", alone(&PerceivedBy))
+      .def("disagreement_m", alone([](TeamEnv& team) { return team.disagreement_m(); }))
+      .def_property_readonly("seed", alone([](TeamEnv& team) { return team.seed(); }))
+      .def_property_readonly("tick", alone([](TeamEnv& team) { return team.episodes().tick(); }))
       .def_property_readonly("time_s",
-                             [](const TeamEnv& team) { return team.experiment().time_s(team.episodes().tick()); })
-      .def_property_readonly("is_at_end", &TeamEnv::is_at_end)
-      .def_property_readonly("is_over", &TeamEnv::is_over)
-      .def_property_readonly("is_terminated", &IsTerminated)
-      .def_property_readonly("failure", &TeamEnv::failure)
-      .def("record", [](TeamEnv& team, const std::optional<std::string>& out,
-                        bool force) { return Compute([&] { return team.Record(out, force); }); })
-      .def("view",
-           [](TeamEnv& team, const std::string& at, double pace) {
+                             alone([](TeamEnv& team) { return team.experiment().time_s(team.episodes().tick()); }))
+      .def_property_readonly("is_at_end", alone([](TeamEnv& team) { return team.is_at_end(); }))
+      .def_property_readonly("is_over", alone([](TeamEnv& team) { return team.is_over(); }))
+      .def_property_readonly("is_terminated", alone(&IsTerminated))
+      .def_property_readonly("failure", alone([](TeamEnv& team) { return team.failure(); }))
+      .def("record",
+           alone([](TeamEnv& team, const std::string& argument, const std::optional<std::string>& out, bool force) {
+             return Compute([&] { return team.Record(out, force, WordsFor(argument)); });
+           }))
+      .def("view", alone([](TeamEnv& team, const std::string& at, double pace) {
              return Compute([&] {
                return team.View({.at = ReadLiveAddress(at, "at"),
                                  .pace = pace,
                                  .may_wait = MayWait,
                                  .log = [](const std::string& line) { fmt::print(stderr, "mascot: {}\n", line); }});
              });
-           })
-      .def("finish", [](TeamEnv& team) { Compute([&] { team.Finish(); }); })
-      .def("close", [](TeamEnv& team) { Compute([&] { team.Close(); }); })
-      .def("save", &TeamEnv::Save)
+           }))
+      .def("finish", alone([](TeamEnv& team) { Compute([&] { team.Finish(); }); }))
+      .def("close", alone([](TeamEnv& team) { Compute([&] { team.Close(); }); }))
+      .def("save", alone([](TeamEnv& team) { return team.Save(); }))
       .def("restore",
-           [](TeamEnv& team, const Episodes::Snapshot& snapshot) { Compute([&] { team.Restore(snapshot); }); });
+           alone([](TeamEnv& team, const Episodes::Snapshot& snapshot) { Compute([&] { team.Restore(snapshot); }); }));
 }
 
 // --- many environments --------------------------------------------------------------------------------
@@ -316,25 +362,25 @@ void BindTeamVector(py::module_& module) {
       .value("SAME_STEP", TeamVector::Autoreset::kSameStep)
       .value("DISABLED", TeamVector::Autoreset::kDisabled);
 
-  py::class_<TeamVector>(module, "TeamVector")
+  using Vector = OneAtATime<TeamVector>;
+  const auto alone = [](auto method) { return Alone<TeamVector>(method); };
+  py::class_<Vector>(module, "TeamVector")
       .def(py::init([](const std::string& path, const Sets& sets, int count, int threads,
                        TeamVector::Autoreset autoreset, bool keeps_states) {
         return Compute([&] {
-          return std::make_unique<TeamVector>(ReadInput(path), NameOfInput(path), OverridesOf(sets), count, threads,
-                                              autoreset, keeps_states);
+          return std::make_unique<Vector>(ReadInput(path), NameOfInput(path), OverridesOf(sets), count, threads,
+                                          autoreset, keeps_states);
         });
       }))
-      .def("about", [](const TeamVector& vector) { return AboutTeam(vector.first()); })
-      .def("reset",
-           [](TeamVector& vector, const std::vector<std::optional<std::uint64_t>>& seeds,
-              const std::optional<Sets>& sets, const Bools& mask, bool in_floats) {
+      .def("about", alone([](TeamVector& vector) { return AboutTeam(vector.first()); }))
+      .def("reset", alone([](TeamVector& vector, const std::vector<std::optional<std::uint64_t>>& seeds,
+                             const std::optional<Sets>& sets, const Bools& mask, bool in_floats) {
              const std::vector<char> which = CharsOf(mask);
              const auto observations = NewObservations(vector, in_floats);
              Compute([&] { vector.Reset(seeds, OverridesOf(sets), which, observations.second); });
              return observations.first;
-           })
-      .def("step",
-           [](TeamVector& vector, const Doubles& actions, bool in_floats) {
+           }))
+      .def("step", alone([](TeamVector& vector, const Doubles& actions, bool in_floats) {
              const TeamEnv& team = vector.first();
              const auto numbers = Numbers(actions, vector.size() * team.agents().size() * team.action_size());
              if (!std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); }))
@@ -342,20 +388,22 @@ void BindTeamVector(py::module_& module) {
              auto observations = NewObservations(vector, in_floats);
              Compute([&] { vector.Step(numbers, observations.second); });
              return OutcomeOf(vector, std::move(observations.first));
-           })
-      .def("reached_states", &ReachedStates)
-      .def("reached_losses", &ReachedLosses)
-      .def("final_observations", &FinalObservations)
-      .def("failure", [](const TeamVector& vector, std::size_t env) { return vector.reached(env).failure; })
-      .def("state", [](TeamVector& vector, std::size_t env) { return StateOf(vector.at(env)); })
-      .def("seed", [](TeamVector& vector, std::size_t env) { return vector.at(env).seed(); })
-      .def("record", [](TeamVector& vector, std::size_t env, const std::string& out,
-                        bool force) { return Compute([&] { return vector.at(env).Record(out, force); }); })
-      .def("finish", [](TeamVector& vector) {
-        Compute([&] {
-          for (std::size_t env = 0; env < vector.size(); ++env) vector.at(env).Finish();
-        });
-      });
+           }))
+      .def("reached_states", alone(&ReachedStates))
+      .def("reached_losses", alone(&ReachedLosses))
+      .def("final_observations", alone(&FinalObservations))
+      .def("failure", alone([](TeamVector& vector, std::size_t env) { return vector.reached(env).failure; }))
+      .def("state", alone([](TeamVector& vector, std::size_t env) { return StateOf(vector.at(env)); }))
+      .def("seed", alone([](TeamVector& vector, std::size_t env) { return vector.at(env).seed(); }))
+      .def("record", alone([](TeamVector& vector, std::size_t env, const std::string& argument, const std::string& out,
+                              bool force) {
+             return Compute([&] { return vector.at(env).Record(out, force, WordsFor(argument)); });
+           }))
+      .def("finish", alone([](TeamVector& vector) {
+             Compute([&] {
+               for (std::size_t env = 0; env < vector.size(); ++env) vector.at(env).Finish();
+             });
+           }));
 }
 
 // --- policies -------------------------------------------------------------------------------------------
@@ -403,7 +451,7 @@ std::string Fly(const std::string& path, const Sets& sets, const std::optional<s
     const Experiment experiment = LoadExperiment(ReadInput(path), NameOfInput(path), OverridesOf(sets));
     RefuseActions(experiment);
     RefuseInProcess(experiment, path);
-    EpisodeRecord record(out, experiment, force);
+    EpisodeRecord record(out, experiment, force, WordsFor("out"));
     Signals signals;
     const auto goes_on = [&] { return !(is_interrupted = is_interrupted || signals.AreThere()); };
     result = RunInProcess(experiment, record.Begin(experiment), goes_on);

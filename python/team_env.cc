@@ -175,10 +175,10 @@ void TeamEnv::StateTo(std::span<double> to) const {
 
 double TeamEnv::disagreement_m() const { return DisagreementOf(episodes_.now(), episodes_.row().motions); }
 
-std::string TeamEnv::Record(const std::optional<std::string>& out, bool force) {
+std::string TeamEnv::Record(const std::optional<std::string>& out, bool force, const RunFolder::Words& words) {
   if (record_ != nullptr && !record_->is_complete())
     throw ConfigError({"expected one recording at a time, got another one before the episode of the last is over"});
-  auto record = std::make_unique<EpisodeRecord>(out, experiment(), force);
+  auto record = std::make_unique<EpisodeRecord>(out, experiment(), force, words);
   record_.swap(record);
   TellWitnesses();
   return record_->folder().string();

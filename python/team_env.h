@@ -77,7 +77,7 @@ class TeamEnv {
 
   /// Records the next episode that leaves its tick 0, this one if it has not, in the folder `out` (RunFolder), which it
   /// returns. Throws ConfigError.
-  std::string Record(const std::optional<std::string>& out, bool force);
+  std::string Record(const std::optional<std::string>& out, bool force, const RunFolder::Words& words);
   /// Shows this episode, if it has not left its tick 0, and the next ones on a page; returns its address. While viewers
   /// pause an episode, Step() waits. Throws ConfigError, also if there is a page already.
   std::string View(const EpisodeView::Options& options);

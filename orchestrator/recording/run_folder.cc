@@ -95,9 +95,9 @@ std::vector<fs::path> NamesOfARun(const fs::path& folder, const std::string& rec
   return names;
 }
 
-/// Removes the files of a run. `words`, `hint`: how a message begins and ends. Throws ConfigError, and removes nothing,
+/// Removes the files of a run. `where`, `hint`: how a message begins and ends. Throws ConfigError, and removes nothing,
 /// if something has the name of such a file and is none.
-void RemoveFiles(const fs::path& folder, const std::string& recording, const std::string& words,
+void RemoveFiles(const fs::path& folder, const std::string& recording, const std::string& where,
                  const std::string& hint) {
   const bool of_a_run = IsOfARun(folder);
   const std::vector<fs::path> names = NamesOfARun(folder, recording);
@@ -109,26 +109,28 @@ void RemoveFiles(const fs::path& folder, const std::string& recording, const std
   }
   if (!others.empty())
     throw ConfigError(
-        {words + ": expected the files of an earlier run, got " + others + ", which no run has made" + hint});
+        {where + ": expected the files of an earlier run, got " + others + ", which no run has made" + hint});
   for (const fs::path& name : names) fs::remove(folder / name);
 }
 
-fs::path MakeGiven(const std::string& out) {
+fs::path MakeGiven(const std::string& out, const RunFolder::Words& words) {
   const fs::path path = out;
   if (fs::exists(path) && !fs::is_directory(path))
-    throw ConfigError({"--out " + out + ": expected a folder, got a file"});
+    throw ConfigError({words.out + " " + out + ": expected a folder, got a file"});
   fs::create_directories(path);
   return path;
 }
 
 /// Throws ConfigError if there is something in the folder; with `force`, if it is not of a run, which is removed.
-void Empty(const fs::path& folder, const std::string& recording, bool force) {
+void Empty(const fs::path& folder, const std::string& recording, bool force, const RunFolder::Words& words) {
   if (fs::is_empty(folder)) return;
+  const std::string where = words.out + " " + folder.string();
   if (!force)
-    throw ConfigError({"--out " + folder.string() +
-                       ": expected a new or empty folder, got one with files in it (--force replaces those of an "
-                       "earlier run, and keeps others)"});
-  RemoveFiles(folder, recording, "--out " + folder.string(), " (--force replaces nothing else)");
+    throw ConfigError(
+        {fmt::format("{}: expected a new or empty folder, got one with files in it ({} replaces those of "
+                     "an earlier run, and keeps others)",
+                     where, words.force)});
+  RemoveFiles(folder, recording, where, " (" + words.force + " replaces nothing else)");
 }
 
 /// "the run 'name'", by its config.toml.
@@ -162,13 +164,15 @@ std::string NameOfRecording(const fs::path& folder) {
 
 }  // namespace
 
-RunFolder::RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force) try
-    : path_(out ? MakeGiven(*out) : MakeNew(fs::path("runs") / experiment.run.name)),
-      lock_(Lock(path_, "--out " + path_.string())) {
-  if (out) Empty(path_, experiment.record.file, force);
+RunFolder::RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force,
+                     const Words& words) try
+    : path_(out ? MakeGiven(*out, words) : MakeNew(fs::path("runs") / experiment.run.name)),
+      lock_(Lock(path_, words.out + " " + path_.string())) {
+  if (out) Empty(path_, experiment.record.file, force, words);
   fs::create_directories(path_ / "logs");
 } catch (const fs::filesystem_error& error) {
-  throw ConfigError({"--out: cannot make the run folder " + error.path1().string() + ": " + error.code().message()});
+  throw ConfigError(
+      {words.out + ": cannot make the run folder " + error.path1().string() + ": " + error.code().message()});
 }
 
 std::vector<std::string> PicturesIn(const fs::path& folder) {

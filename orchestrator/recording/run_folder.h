@@ -24,10 +24,17 @@ std::vector<std::string> PicturesIn(const std::filesystem::path& folder);
 /// lives, the folder is locked, and no other run of this machine takes it.
 class RunFolder {
  public:
+  /// What users call `out` and `force`, for messages.
+  struct Words {
+    std::string out = "--out";
+    std::string force = "--force";
+  };
   /// Creates the folder. Throws ConfigError if that fails, if another run writes to the folder, or if `out` exists and
   /// is not empty. With `force`, the files of an earlier run are removed from it instead, and no others; in a folder
   /// that no run has made, something with the name of such a file is an error.
-  RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force);
+  RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force, const Words& words);
+  RunFolder(const std::optional<std::string>& out, const Experiment& experiment, bool force)
+      : RunFolder(out, experiment, force, Words()) {}
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path File(const std::string& name) const { return path_ / name; }

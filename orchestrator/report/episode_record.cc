@@ -23,8 +23,9 @@ struct EpisodeRecord::Running {
   RunRequests requests;  // knows which events were given by hand
 };
 
-EpisodeRecord::EpisodeRecord(const std::optional<std::string>& out, const Experiment& experiment, bool force)
-    : folder_(std::in_place, out, experiment, force), path_(folder_->path()) {}
+EpisodeRecord::EpisodeRecord(const std::optional<std::string>& out, const Experiment& experiment, bool force,
+                             const RunFolder::Words& words)
+    : folder_(std::in_place, out, experiment, force, words), path_(folder_->path()) {}
 
 EpisodeRecord::~EpisodeRecord() = default;
 

@@ -16,7 +16,8 @@ namespace mascot {
 class EpisodeRecord final : public EpisodeWitness {
  public:
   /// Creates the folder `out`, as RunFolder does, for an episode of `experiment`, or of one with other values.
-  EpisodeRecord(const std::optional<std::string>& out, const Experiment& experiment, bool force);
+  EpisodeRecord(const std::optional<std::string>& out, const Experiment& experiment, bool force,
+                const RunFolder::Words& words = RunFolder::Words());
   ~EpisodeRecord() override;
 
   std::vector<RowSink*> Begin(const Experiment& experiment) override;

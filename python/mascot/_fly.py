@@ -56,7 +56,7 @@ def fly(file: str | os.PathLike[str], law: Law | None = None, *, seed: int | Non
     if law is None:
         return load(_core.core.fly(_core.path_of(file), _core.sets(changes), out and _core.path_of(out), force))
     team = _core.core.TeamEnv(_core.path_of(file), _core.sets(changes))
-    folder = team.record(out and _core.path_of(out), force)
+    folder = team.record("out", out and _core.path_of(out), force)
     about = team.about()
     agents = {i: (Agent(), len(high)) for i, high in zip(about["ids"], about["action_high"])}
     try:

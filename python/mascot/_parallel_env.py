@@ -170,7 +170,7 @@ class ParallelEnv(_Base):
         last tick, or with reset() or close().
 
         force: replace the files of an earlier run in this folder."""
-        self._team.record(_core.path_of(folder), force)
+        self._team.record("folder", _core.path_of(folder), force)
 
     def view(self, at: str = "127.0.0.1:8765", *, pace: float = 1.0, browser: bool | None = None) -> str:
         """Shows the next episode that begins to move, this one if it is at its start, and those after it on a page, until

@@ -144,7 +144,7 @@ class VectorEnv(_Base):
 
     def record(self, env: int, folder: str | os.PathLike[str], force: bool = False) -> None:
         """Records the next episode of environment `env` (from 0), as record() of `mascot.parallel_env()`."""
-        self._teams.record(env, _core.path_of(folder), force)
+        self._teams.record(env, "folder", _core.path_of(folder), force)
 
     def state(self) -> np.ndarray:
         """The true state of the teams now, of shape (num_envs, agents of the file, 13), as state() of `mascot.parallel_env()`."""

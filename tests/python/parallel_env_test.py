@@ -411,16 +411,16 @@ class Mistakes(TestCase):
                     lambda: mascot.parallel_env(self.write(text)), RuntimeError)
 
 
-def interrupt_a_step():
-    """Ctrl-C as soon as the main thread is in the C++ part of step()."""
+def await_a_step():
+    """Returns when the main thread is in the C++ part of step()."""
     lines, first = inspect.getsourcelines(mascot.ParallelEnv.step)
     line = first + next(k for k, text in enumerate(lines) if "self._team.step(" in text)
     deadline = time.monotonic() + 30
     while time.monotonic() < deadline:
         frame = sys._current_frames()[threading.main_thread().ident]
         if (frame.f_code, frame.f_lineno) == (mascot.ParallelEnv.step.__code__, line):
-            signal.raise_signal(signal.SIGINT)
             return
+    raise AssertionError("no step within 30 s")
 
 
 class Pages(TestCase):
@@ -458,12 +458,40 @@ class Pages(TestCase):
         env = team()
         env.view(":0", pace=1e-6, browser=False)  # 10000 s a tick
         env.reset()
-        interrupts = threading.Thread(target=interrupt_a_step)
+        def interrupt():
+            await_a_step()
+            signal.raise_signal(signal.SIGINT)
+
+        interrupts = threading.Thread(target=interrupt)
         interrupts.start()
         with self.assertRaises(KeyboardInterrupt):
             env.step(still(env))
         interrupts.join(60)
         self.assertEqual(env.time_s, 0.01)  # the step is made
+        env.close()
+
+    def test_while_a_step_waits_others_may_not_use_the_environment(self):
+        env = team()
+        env.view(":0", pace=1e-6, browser=False)
+        env.reset()
+        refused = []
+
+        def disturb():
+            await_a_step()
+            for use in (env.state, env.reset, env.snapshot, lambda: env.step(still(env)), env.close):
+                try:
+                    use()
+                except RuntimeError as error:
+                    refused.append(str(error))
+            signal.raise_signal(signal.SIGINT)
+
+        disturbs = threading.Thread(target=disturb)
+        disturbs.start()
+        with self.assertRaises(KeyboardInterrupt):
+            env.step(still(env))
+        disturbs.join(60)
+        self.assertEqual(refused, ["expected one thread at a time in an environment, got two"] * 5)
+        env.state()
         env.close()
 
     def test_the_browser_is_that_of_the_user(self):

@@ -91,8 +91,11 @@ class Records(TestCase):
         env = mascot.parallel_env(LEADERLESS, set=SHORT)
         env.record("run")
         fly(env)
-        with self.assertRaisesRegex(mascot.ConfigError, "run"):
+        with self.assertRaisesRegex(mascot.ConfigError, r"^folder run: expected a new or empty folder, got one with files in it "
+                                    r"\(force=True replaces those of an earlier run, and keeps others\)$"):
             env.record("run")
+        with self.assertRaisesRegex(mascot.ConfigError, "^out run: expected a new or empty folder"):
+            mascot.fly(LEADERLESS, set=SHORT, out="run")
         env.record("run", force=True)
         fly(env)
 
