@@ -1,5 +1,6 @@
 #include "bus/sample_layout.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "bus/wire.h"
@@ -46,6 +47,12 @@ void PutHead(std::int64_t tick, int rate_hz, int agent, std::uint32_t more, std:
 }
 
 }  // namespace
+
+std::uint8_t* BodyIn(std::vector<std::uint8_t>& sample, std::size_t size) {
+  sample.resize(kEncapsulation.size() + size);
+  std::ranges::copy(kEncapsulation, sample.begin());
+  return sample.data() + kEncapsulation.size();
+}
 
 BodyHead HeadOf(const std::uint8_t* body) {
   return {.tick = Get<std::uint64_t>(body + kTick),

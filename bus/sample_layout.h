@@ -20,6 +20,8 @@ namespace mascot {
 
 /// What stands in front of each sample: CDR, little-endian.
 inline constexpr std::array<std::uint8_t, 4> kEncapsulation = {0, 1, 0, 0};
+/// Makes `sample` one with a body of `size` bytes, which it returns.
+std::uint8_t* BodyIn(std::vector<std::uint8_t>& sample, std::size_t size);
 
 inline constexpr std::size_t kStateBody = 152, kCommandBody = 104, kClockBody = 8;  // bytes
 inline constexpr std::size_t kMaxNumbers = 64;                                      ///< of a message

@@ -67,7 +67,7 @@ def options_of(text):
 def typed_in(text):
     """The commands of `orchestrator` in a page of Markdown, each as a list of words: in blocks, and between backticks."""
     blocks = re.findall(r"^```(\w*)[^\n]*\n(.*?)^```$", text, re.M | re.S)
-    lines = [line for language, block in blocks if language in ("", "console", "bash")
+    lines = [line for language, block in blocks if language in ("", "console", "bash", "sh")
              for line in block.splitlines() if not line.startswith("  ")]  # drawings are indented
     lines += [line for line in re.findall(r"`([^`\n]+)`", re.sub(r"^```.*?^```$", "", text, flags=re.M | re.S))]
     commands = [command for line in lines
@@ -138,6 +138,7 @@ class CommandLine(unittest.TestCase):
     def test_such_a_name_would_be_found(self):
         text = "```\n$ orchestrator up a.toml --vieuw  # no --such\n```\n`orchestrator plott RUN --size column\\|page` here\n"
         self.assertEqual(typed_in(text), [["up", "a.toml", "--vieuw"], ["plott", "RUN", "--size", "column|page"]])
+        self.assertEqual(typed_in("```sh\norchestrator ps --jsom\n```\n"), [["ps", "--jsom"]])
         between = "```toml\na = 1\n```\nEach orchestrator makes one.\n```\n$ orchestrator ps\n```\n"
         self.assertEqual(typed_in(between), [["ps"]])
         self.assertEqual(options_of("| `--size screen\\|column` | x |\n| `--json` | y |\n"), {"--size": "screen|column", "--json": ""})

@@ -22,13 +22,6 @@ auto& SampleIn(AnyRow& row, const Topic& topic) {
                                              : row.clock;
 }
 
-/// Makes room in `bytes` for a sample of this size, and returns the place of its body.
-std::uint8_t* BodyIn(Row::Bytes& bytes, std::size_t body) {
-  bytes.resize(kEncapsulation.size() + body);
-  std::ranges::copy(kEncapsulation, bytes.begin());
-  return bytes.data() + kEncapsulation.size();
-}
-
 /// The body of a sample of `row`. Throws std::runtime_error with tick and topic if it has not this size.
 const std::uint8_t* BodyOf(const Row& row, const Topic& topic, std::size_t body) {
   const Row::Bytes& bytes = SampleIn(row, topic);

@@ -151,9 +151,10 @@ void FuzzJoinList(Events& events) {
 }
 
 void FuzzRowWindow(Events& events) {
-  const std::vector<Topic> topics = {Topic::Command(1), Topic::State(1), Topic::Message(2), Topic::State(2),
-                                     Topic::Clock()};
-  const bool realtime = events.ConsumeBool();
+  std::vector<Topic> topics = {Topic::Command(1), Topic::State(1), Topic::Message(2), Topic::State(2), Topic::Clock()};
+  const std::size_t received = topics.size();
+  const bool realtime = events.ConsumeBool(), takes_actions = events.ConsumeBool();
+  if (takes_actions) topics.push_back(Topic::Action(1));
   RowWindow window({.topics = topics,
                     .agents = 2,
                     .last_tick = 50,
@@ -163,7 +164,7 @@ void FuzzRowWindow(Events& events) {
                     .batch = 2,
                     .doubts = events.ConsumeBool()});
   std::vector<std::int64_t> sequences(topics.size(), 0);
-  std::int64_t event_tick = 0, event_sequence = 0;
+  std::int64_t event_tick = 0, event_sequence = 0, acted = -1;
   Silences silences;
   Row row(2);
   const auto lose_or_regain = [&] {
@@ -179,7 +180,16 @@ void FuzzRowWindow(Events& events) {
     silences.Take(event);
     Require(window.IsLost(agent) == silences.Has(agent, 50), "does not know who is lost");
   };
+  const auto act = [&] {
+    if (!takes_actions || !window.HasStates(acted + 1)) return;
+    ++acted;
+    if (!window.IsSilent(topics.back(), acted)) window.Take(topics.size() - 1, acted, std::vector<std::uint8_t>(3));
+    window.EndActions(acted);
+  };
   const auto judge = [&] {
+    Require(!takes_actions || row.tick <= acted, "a row before its actions");
+    Require(!takes_actions || !realtime || row.actions[0].empty() || !row.commands[0].empty(),
+            "an action that nobody has taken");
     for (const Topic& topic : topics) {
       if (topic.kind != TopicKind::kCommand && topic.kind != TopicKind::kMessage) continue;
       const bool is_silent = silences.Has(topic.agent, row.tick);
@@ -195,7 +205,8 @@ void FuzzRowWindow(Events& events) {
         lose_or_regain();
         continue;
       }
-      const auto index = events.ConsumeIntegralInRange<std::size_t>(0, topics.size() - 1);
+      act();
+      const auto index = events.ConsumeIntegralInRange<std::size_t>(0, received - 1);
       const bool is_good = events.ConsumeProbability<double>() < 0.98;
       const std::int64_t tick = is_good ? window.rows() + events.ConsumeIntegralInRange<std::int64_t>(0, 3)
                                         : std::clamp<std::int64_t>(SomeTick(events, window.rows()), 0, kLastTick);

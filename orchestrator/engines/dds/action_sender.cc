@@ -36,9 +36,7 @@ void ActionSender::Act(std::int64_t tick) {
   feed_.GoTo(tick);
   for (Taker& taker : takers_) {
     const std::span<const double> action = feed_.Of(taker.id);
-    taker.sample.resize(kEncapsulation.size() + MessageBody(action.size()));
-    std::ranges::copy(kEncapsulation, taker.sample.begin());
-    PutMessage(tick, experiment_.control.rate_hz, taker.id, action, taker.sample.data() + kEncapsulation.size());
+    PutMessage(tick, experiment_.control.rate_hz, taker.id, action, BodyIn(taker.sample, MessageBody(action.size())));
     taker.is_sent = !recorder_.TakeAction(taker.id, tick, taker.sample);
     SendTo(taker);
   }

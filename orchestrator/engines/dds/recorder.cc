@@ -138,8 +138,7 @@ bool Recorder::TakeBody(std::size_t index, std::span<const std::uint8_t> body) {
   const Topic& topic = window_.topics()[index];
   const BodyHead head = HeadOf(body.data());
   const std::int64_t tick = CheckedTick(topic, head.agent, head.tick, experiment_.ticks());
-  sample_.assign(kEncapsulation.begin(), kEncapsulation.end());
-  sample_.insert(sample_.end(), body.begin(), body.end());
+  std::ranges::copy(body, BodyIn(sample_, body.size()));
   return Take(index, tick, sample_, topic.kind == TopicKind::kState ? head.more : 0);
 }
 
@@ -164,9 +163,7 @@ void Recorder::OnRow(const RawReader::Bytes& bytes, std::int64_t sequence) {
   for (const auto& message : messages) wake |= TakeBody(index_of(messages_, message), message);
   if (states.count > 0) {
     const auto tick = static_cast<std::int64_t>(row.tick());
-    sample_.resize(kEncapsulation.size() + kClockBody);
-    std::ranges::copy(kEncapsulation, sample_.begin());
-    PutClock(tick, experiment_.control.rate_hz, sample_.data() + kEncapsulation.size());
+    PutClock(tick, experiment_.control.rate_hz, BodyIn(sample_, kClockBody));
     wake |= Take(/*index=*/0, tick, sample_, /*events=*/0);
   }
   for (std::size_t k = 0; k < states.count; ++k) wake |= TakeBody(index_of(states_, states[k]), states[k]);

@@ -20,8 +20,8 @@ std::span<const std::uint8_t> BodyOfSample(const Row::Bytes& sample) {
 }
 
 Row::Bytes SampleOfBody(std::span<const std::uint8_t> body) {
-  Row::Bytes sample(kEncapsulation.size() + body.size());
-  std::ranges::copy(body, std::ranges::copy(kEncapsulation, sample.begin()).out);
+  Row::Bytes sample;
+  std::ranges::copy(body, BodyIn(sample, body.size()));
   return sample;
 }
 
