@@ -12,6 +12,11 @@ void RequestQueue::Ask(const Request& request, std::function<void(const Answer&)
   come_.notify_one();
 }
 
+void RequestQueue::Close() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
 void RequestQueue::Run(const std::stop_token& over) {
   for (;;) {
     std::unique_lock lock(mutex_);

@@ -19,8 +19,10 @@ class RequestQueue {
   explicit RequestQueue(RunControl& control)
       : control_(control), thread_([this](const std::stop_token& over) { Run(over); }) {}
 
-  /// `answered` gets the answer in this object's thread; it is not called if this object ends before.
+  /// `answered` gets the answer in this object's thread; it is not called if this object is closed before.
   void Ask(const Request& request, std::function<void(const Answer&)> answered);
+  /// Ends the thread: from now on nobody is asked, and nothing is answered.
+  void Close();
 
  private:
   struct Question {

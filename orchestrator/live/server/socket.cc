@@ -41,7 +41,6 @@ using Response = http::response<http::string_body>;
 
 constexpr int kPortsToTry = 100;
 constexpr int kMaxLines = 100;  // of the log: a hostile client could fill a disk
-constexpr auto kGoodbye = std::chrono::seconds(1);
 constexpr auto kGoodbyeLook = std::chrono::milliseconds(5);
 constexpr auto kFullPause = std::chrono::milliseconds(10);  // until a client is let in, without descriptors
 constexpr auto kIdle = std::chrono::seconds(60);            // a client that does not even answer pings is gone
@@ -475,7 +474,7 @@ class SocketServer::Impl {
     timer_.cancel();
     pause_.cancel();
     for (const auto& [id, session] : std::map(server_.sessions)) session->SayGoodbye();
-    AwaitGoodbyes(std::chrono::steady_clock::now() + kGoodbye);
+    AwaitGoodbyes(std::chrono::steady_clock::now() + server_.options.limits.goodbye);
   }
 
   void AwaitGoodbyes(std::chrono::steady_clock::time_point until) {

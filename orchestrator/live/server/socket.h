@@ -37,7 +37,8 @@ struct SocketLimits {
   std::size_t waiting_bytes = std::size_t{64} << 20;  ///< a client that leaves more than this unread is dropped
   /// If all clients together leave more than this unread, as it lies in memory, the one that leaves most is dropped.
   std::size_t all_waiting_bytes = std::size_t{256} << 20;
-  std::chrono::seconds handshake{5};  ///< time for a request to arrive
+  std::chrono::seconds handshake{5};        ///< time for a request to arrive
+  std::chrono::milliseconds goodbye{1000};  ///< at the end, time for clients to take what waits for them
 };
 
 struct SocketOptions {
@@ -74,7 +75,7 @@ class SocketServer {
   /// Listens from now on. `log` takes a line about a client that was dropped or refused, in the server's thread. Throws
   /// std::runtime_error if no port is free. `user` must outlive this object, and is called only after Start().
   SocketServer(SocketOptions options, SocketUser& user, std::function<void(const std::string&)> log);
-  /// Closes the connections in order, sends waiting messages for at most a second, and ends the thread.
+  /// Closes the connections in order, sends waiting messages for at most SocketLimits::goodbye, and ends the thread.
   ~SocketServer();
   SocketServer(const SocketServer&) = delete;
   SocketServer& operator=(const SocketServer&) = delete;

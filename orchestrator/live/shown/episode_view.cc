@@ -1,5 +1,6 @@
 #include "orchestrator/live/shown/episode_view.h"
 
+#include <chrono>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -27,7 +28,8 @@ struct EpisodeView::Shown {
               .port = options.at.port,
               .page = FindShared("page", "orchestrator/live"),
               .source = {.engine = kInProcess},
-              .pace = requests.status().pace},
+              .pace = requests.status().pace,
+              .goodbye = std::chrono::milliseconds(100)},  // whoever steps waits for it
              options.log) {}
   ~Shown() { requests.Close(); }  // nobody waits for an answer while the view ends
   Shown(const Shown&) = delete;

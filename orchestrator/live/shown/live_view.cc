@@ -28,7 +28,8 @@ SocketOptions OptionsOf(const LiveView::Options& options) {
           .port = options.port,
           .subprotocols = {std::begin(kSubprotocols), std::end(kSubprotocols)},
           .allowed_origins = options.allowed_origins,
-          .period = std::chrono::milliseconds(1000 / kFramesPerSecond)};
+          .period = std::chrono::milliseconds(1000 / kFramesPerSecond),
+          .limits = {.goodbye = options.goodbye}};
 }
 
 }  // namespace
@@ -62,8 +63,8 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       foxglove_(
           AboutTheRun(experiment, ros_.channels(), source_.recorded ? source_.recorded->last_tick : experiment.ticks()),
           *this),
-      server_(OptionsOf(options), *this, std::move(log)),
-      request_queue_(control) {
+      request_queue_(control),
+      server_(OptionsOf(options), *this, std::move(log)) {
   server_.Start();
 }
 

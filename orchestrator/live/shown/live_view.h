@@ -40,6 +40,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
     std::filesystem::path results = {};  ///< of a recording: the folder of its pictures and summary; empty: none
     ShownSource source = {};
     double pace = 0;  ///< simulated seconds per second that the run shall fly; 0: as fast as the machine can
+    std::chrono::milliseconds goodbye{1000};  ///< SocketLimits::goodbye
     /// Who may steer; others only watch.
     Steering steering = Steering(Steering::By::kAll);
   };
@@ -52,6 +53,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   /// As above, but for a recording, whose rows come by Take(), not by Add().
   LiveView(const Experiment& experiment, const Prediction& prediction, RunControl& control, const Options& options,
            std::function<void(const std::string&)> log);
+
+  ~LiveView() override { request_queue_.Close(); }
 
   /// Address of the page.
   std::string url() const { return server_.url(); }
@@ -153,8 +156,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   std::int64_t measured_tick_ = 0;
 
   Foxglove foxglove_;
+  RequestQueue request_queue_;  // its thread uses server_, until it is closed
   SocketServer server_;         // its thread uses all of the above
-  RequestQueue request_queue_;  // its thread uses server_
 };
 
 }  // namespace mascot

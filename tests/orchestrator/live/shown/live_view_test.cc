@@ -5,8 +5,11 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
+#include <thread>
 
 #include "agent/laws/laws.h"
 #include "bus/wire.h"
@@ -722,6 +725,19 @@ TEST(LiveView, AQuestionThatThrowsIsAnswered) {
   run.control.breaks = true;
   Viewer viewer(run.view.url());
   EXPECT_EQ(viewer.Ask({{"ask", "pause"}}), (Json{{"granted", false}, {"words", "made up"}}));
+}
+
+TEST(LiveView, EndsWhileSomebodyAsks) {
+  for (int round = 0; round < 3; ++round) {
+    auto run = std::make_unique<Watched>(Load(kThree));
+    const Viewer viewer(run->view.url());
+    const std::jthread asking([&](const std::stop_token& over) {
+      const std::string head("\x02\0\0\0\0\1\0\0\0\4\0\0\0json", 17);
+      while (!over.stop_requested()) viewer.Send(WebClient::kBinary, head + R"({"ask":"pause"})");
+    });
+    Await("requests", [&] { return run->control.requests().size() > 100; });
+    run.reset();
+  }
 }
 
 /// Runs wscheck against a server; it ends once it has seen all that it expects.
