@@ -1,6 +1,7 @@
 // The module mascot._mascot: what mascot/*.py stands on. Arrays go in and out as NumPy's; while C++ computes, other
 // threads of Python run.
 #include <fmt/format.h>
+#include <pthread.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -16,6 +17,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -52,18 +54,33 @@ std::optional<std::vector<Override>> OverridesOf(const std::optional<Sets>& sets
   return sets ? std::optional(OverridesOf(*sets)) : std::nullopt;
 }
 
-/// An environment that one thread at a time may use.
+/// How often this process was forked off from others, since the module was loaded.
+std::atomic<int> forks = 0;
+
+/// An environment that one thread at a time may use, of the process that has made it: its threads are not in a fork.
 template <class Environment>
 struct OneAtATime : Environment {
   using Environment::Environment;
   std::atomic<bool> is_used = false;
+  const int made_in = forks;
+};
+
+/// A fork leaves the environments of its parent as they are.
+struct Delete {
+  template <class Environment>
+  void operator()(OneAtATime<Environment>* environment) const {
+    if (environment->made_in == forks) delete environment;
+  }
 };
 
 /// A thread uses an environment.
 class Use {
  public:
-  explicit Use(std::atomic<bool>& is_used) : is_used_(is_used) {
-    if (is_used.exchange(true)) throw std::runtime_error("expected one thread at a time in an environment, got two");
+  template <class Environment>
+  explicit Use(OneAtATime<Environment>& environment) : is_used_(environment.is_used) {
+    if (environment.made_in != forks)
+      throw std::runtime_error("expected an environment that this process has made, got one of its parent");
+    if (is_used_.exchange(true)) throw std::runtime_error("expected one thread at a time in an environment, got two");
   }
   ~Use() { is_used_ = false; }
   Use(const Use&) = delete;
@@ -77,7 +94,7 @@ class Use {
 template <class Environment, class Method, class Result, class First, class... Arguments>
 auto AloneAs(Method method, Result (Method::* /*signature*/)(First, Arguments...) const) {
   return [method](OneAtATime<Environment>& environment, Arguments... arguments) -> Result {
-    const Use use(environment.is_used);
+    const Use use(environment);
     return method(environment, std::forward<Arguments>(arguments)...);
   };
 }
@@ -94,10 +111,47 @@ auto Alone(Result (*method)(First, Arguments...)) {
 /// What a folder is called that is given as `argument` of a function in Python.
 RunFolder::Words WordsFor(const std::string& argument) { return {.out = argument, .force = "force=True"}; }
 
+/// When the interpreter ends, it ends each thread that asks for its lock, by unwinding, which C++ does not survive.
+/// Such a thread is to wait for the end of the process instead. Threads that take the lock right then are counted.
+std::atomic<unsigned long> ended_by = 0;  // the thread that ends the interpreter; 0: none does yet
+std::atomic<int> taking = 0;
+
+/// Calls take(), which takes the lock of the interpreter.
+template <class Take>
+void TakeInterpreter(Take&& take) {
+  ++taking;
+  if (ended_by != 0 && ended_by != PyThread_get_thread_ident()) {
+    --taking;
+    for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+  }
+  take();
+  --taking;
+}
+
+void OnEndOfInterpreter() {
+  ended_by = PyThread_get_thread_ident();
+  const py::gil_scoped_release release;
+  while (taking > 0) std::this_thread::yield();
+}
+
+/// Without the lock of the interpreter.
+class Released {
+ public:
+  Released() : state_(PyEval_SaveThread()) {}
+  ~Released() {
+    TakeInterpreter([this] { PyEval_RestoreThread(state_); });
+  }
+  Released(const Released&) = delete;
+  Released& operator=(const Released&) = delete;
+
+ private:
+  PyThreadState* const state_;
+};
+
 /// Calls work() without the lock of the interpreter, and with the arithmetic of our programs.
 template <class Work>
 auto Compute(Work&& work) {
-  const py::gil_scoped_release release;
+  const Released released;
   const SameFloatingPoint same;
   return work();
 }
@@ -109,7 +163,8 @@ class Signals {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return false;
     next_ = now + std::chrono::milliseconds(50);
-    const py::gil_scoped_acquire acquire;
+    std::optional<py::gil_scoped_acquire> acquired;
+    TakeInterpreter([&] { acquired.emplace(); });
     return PyErr_CheckSignals() != 0;  // then it has set what the handler has raised
   }
 
@@ -246,9 +301,10 @@ void BindTeamEnv(py::module_& module) {
 
   using Env = OneAtATime<TeamEnv>;
   const auto alone = [](auto method) { return Alone<TeamEnv>(method); };
-  py::class_<Env>(module, "TeamEnv")
+  using Owned = std::unique_ptr<Env, Delete>;
+  py::class_<Env, Owned>(module, "TeamEnv")
       .def(py::init([](const std::string& path, const Sets& sets) {
-        return Compute([&] { return std::make_unique<Env>(ReadInput(path), NameOfInput(path), OverridesOf(sets)); });
+        return Compute([&] { return Owned(new Env(ReadInput(path), NameOfInput(path), OverridesOf(sets))); });
       }))
       .def("about", alone(&AboutTeam))
       .def("reset", alone([](TeamEnv& team, std::optional<std::uint64_t> seed, const std::optional<Sets>& sets) {
@@ -364,12 +420,13 @@ void BindTeamVector(py::module_& module) {
 
   using Vector = OneAtATime<TeamVector>;
   const auto alone = [](auto method) { return Alone<TeamVector>(method); };
-  py::class_<Vector>(module, "TeamVector")
+  using Owned = std::unique_ptr<Vector, Delete>;
+  py::class_<Vector, Owned>(module, "TeamVector")
       .def(py::init([](const std::string& path, const Sets& sets, int count, int threads,
                        TeamVector::Autoreset autoreset, bool keeps_states) {
         return Compute([&] {
-          return std::make_unique<Vector>(ReadInput(path), NameOfInput(path), OverridesOf(sets), count, threads,
-                                          autoreset, keeps_states);
+          return Owned(new Vector(ReadInput(path), NameOfInput(path), OverridesOf(sets), count, threads, autoreset,
+                                  keeps_states));
         });
       }))
       .def("about", alone([](TeamVector& vector) { return AboutTeam(vector.first()); }))
@@ -493,6 +550,8 @@ py::tuple ArraysOf(const std::string& run) {
 
 PYBIND11_MODULE(_mascot, module) {
   using namespace mascot;
+  pthread_atfork(nullptr, nullptr, [] { ++forks; });
+  py::module_::import("atexit").attr("register")(py::cpp_function(&OnEndOfInterpreter));
   py::register_exception<ConfigError>(module, "ConfigError", PyExc_ValueError);
   BindTeamEnv(module);
   BindTeamVector(module);

@@ -125,16 +125,19 @@ void TeamEnv::Begin() {
 }
 
 void TeamEnv::Reset(std::optional<std::uint64_t> seed, std::optional<std::vector<Override>> sets) {
-  if (sets) sets_ = std::move(*sets);
-  std::vector<Override> changes = sets_;
-  if (!seed && seeds_)
-    seed = seeds_->Below(kSeeds);
+  std::vector<Override> next_sets = sets ? std::move(*sets) : sets_;
+  std::optional<Random> next_seeds = seeds_;
+  std::vector<Override> changes = next_sets;
+  if (!seed && next_seeds)
+    seed = next_seeds->Below(kSeeds);
   else if (seed)
-    seeds_.emplace(*seed, Random::Stream::kEpisodes);
+    next_seeds.emplace(*seed, Random::Stream::kEpisodes);
   if (seed) changes.push_back({.key = "run.seed", .value = std::to_string(*seed), .origin = "seed"});
   episodes_.Reset(std::move(changes));
-  if (!seeds_) seeds_.emplace(this->seed(), Random::Stream::kEpisodes);
+  if (!next_seeds) next_seeds.emplace(this->seed(), Random::Stream::kEpisodes);
   Begin();
+  sets_ = std::move(next_sets);
+  seeds_ = next_seeds;
 }
 
 void TeamEnv::Step(std::span<const double> actions, std::span<const char> given) {

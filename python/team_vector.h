@@ -47,7 +47,7 @@ class TeamVector {
   void Step(std::span<const double> actions, Observations to);
 
   /// How an environment was at the tick that the last Step() has reached, before a reset at that step.
-  struct alignas(64) Reached {  // written by one thread
+  struct alignas(64) Reached {              // written by one thread
     std::vector<double> state = {};         ///< TeamEnv::StateTo(), if it is wanted
     std::vector<double> observations = {};  ///< only if the environment was reset at this step
     std::vector<char> is_lost = {};

@@ -62,8 +62,21 @@ def seed_of(seed: Any) -> int | None:
     return number
 
 
+def count_of(what: str, number: Any) -> int:
+    """`number` as an integer of at least 1."""
+    try:
+        count = operator.index(number)
+    except TypeError:
+        raise TypeError(f"{what}: expected an integer, got {number!r}") from None
+    if count < 1:
+        raise ValueError(f"{what}: expected at least 1, got {count}")
+    return count
+
+
 def sets(values: Mapping[str, Any] | None) -> list[tuple[str, str]]:
     """What `orchestrator up --set` takes: dotted keys, and their values as TOML."""
+    if values is not None and not isinstance(values, Mapping):
+        raise TypeError(f"set: expected a dict, got {values!r}")
     return [(str(key), toml(value)) for key, value in (values or {}).items()]
 
 

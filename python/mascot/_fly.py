@@ -52,7 +52,7 @@ def fly(file: str | os.PathLike[str], law: Law | None = None, *, seed: int | Non
     Raises ConfigError for a mistake in the file or in `set`, RuntimeError if the run fails, and what `law` raises."""
     changes = dict(set or {})
     if seed is not None:
-        changes["run.seed"] = int(seed)
+        changes["run.seed"] = _core.seed_of(seed)
     if law is None:
         return load(_core.core.fly(_core.path_of(file), _core.sets(changes), out and _core.path_of(out), force))
     team = _core.core.TeamEnv(_core.path_of(file), _core.sets(changes))

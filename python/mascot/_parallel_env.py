@@ -72,6 +72,7 @@ class ParallelEnv(_Base):
         self._sizes = [len(high) for high in about["action_high"]]
         self._actions = np.zeros((len(self.possible_agents), about["action_size"]))
         self._given = np.zeros(len(self.possible_agents), bool)
+        self._lost = np.zeros(len(self.possible_agents), bool)
         largest = np.finfo(self._dtype).max
         self.state_space = box(np.full((about["agents"], 13), largest), self._dtype)
 
@@ -91,7 +92,7 @@ class ParallelEnv(_Base):
     @property
     def episode_seed(self) -> int:
         """run.seed of this episode."""
-        return self._team.seed
+        return self._team.seed if self._seed is None else self._seed
 
     @property
     def time_s(self) -> float:
@@ -108,8 +109,12 @@ class ParallelEnv(_Base):
         environments: PettingZoo wants them to be passed over."""
         changes = None if not options or "set" not in options else _core.sets(options["set"])
         seed = _core.seed_of(seed)
-        first, self._seed = self._seed, None
-        self._team.reset(first if seed is None else seed, changes)
+        try:
+            self._team.reset(self._seed if seed is None else seed, changes)
+        except _core.ConfigError:  # the episode before has ended
+            self.agents = []
+            raise
+        self._seed = None
         self._actions[:] = 0
         self._begin()
         return self._observe(self.agents), {agent: {} for agent in self.agents}
@@ -124,20 +129,20 @@ class ParallelEnv(_Base):
                 raise ValueError("actions: expected none, because no agent is left: reset() begins the next episode")
             return {}, {}, {}, {}, {}
         self._take(actions)
-        self._team.step(self._actions, self._given)
-        agents, is_over = self.agents, self._team.is_terminated
+        agents = self.agents
+        try:
+            self._team.step(self._actions, self._given)
+        finally:
+            self._leave_out()
+        is_over = self._team.is_terminated
         observations = self._observe(agents)
         rewards = self._rewards(agents)
-        lost = self._team.lost()
-        terminations = {a: bool(is_over or lost[self._index[a]]) for a in agents}
+        terminations = {a: bool(is_over or self._lost[self._index[a]]) for a in agents}
         truncations = dict.fromkeys(agents, bool(self._team.is_at_end))
         infos: dict[str, dict[str, Any]] = {a: {} for a in agents}
         if is_over and self._team.failure:
             for info in infos.values():
                 info["failure"] = self._team.failure
-        self.agents = [a for a in agents if not terminations[a] and not truncations[a]]
-        if len(self.agents) < len(agents):
-            self._mark()
         return observations, rewards, terminations, truncations, infos
 
     def state(self) -> np.ndarray:
@@ -156,6 +161,8 @@ class ParallelEnv(_Base):
 
     def restore(self, snapshot: _core.Snapshot) -> dict[str, np.ndarray]:
         """Flies the episode of a snapshot again, up to its tick and to the same bits. Returns the observations there."""
+        if not isinstance(snapshot, _core.Snapshot):
+            raise TypeError(f"snapshot: expected a mascot.Snapshot, got {type(snapshot).__name__}")
         self._team.restore(snapshot)
         self._actions[:] = 0
         self._begin()
@@ -181,6 +188,8 @@ class ParallelEnv(_Base):
             address may watch and steer. If the port is taken, the page takes the next one that is free.
         pace: simulated seconds a second, unless the file has run.pace; 0: as fast as it goes. Viewers may change it.
         browser: whether to open the page in a browser; None: where there is a display."""
+        if not isinstance(at, str):
+            raise TypeError(f'at: expected a str such as "127.0.0.1:8765", got {at!r}')
         address = self._team.view(at, float(pace))
         if browser or (browser is None and ("DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ)):
             webbrowser.open(address)
@@ -193,6 +202,15 @@ class ParallelEnv(_Base):
         """Ends the episode, completes its recording, and ends the page."""
         self._team.close()
         self.agents = []
+
+    def _leave_out(self) -> None:
+        """Those who are lost, or all, if the episode is over."""
+        self._lost = lost = self._team.lost()
+        if self._team.is_over:
+            self.agents = []
+        elif lost.any():
+            self.agents = [a for a in self.agents if not lost[self._index[a]]]
+            self._mark()
 
     def _begin(self) -> None:
         lost = self._team.lost()
@@ -210,6 +228,8 @@ class ParallelEnv(_Base):
         return {a: rows[self._index[a]] for a in agents}
 
     def _take(self, actions: Mapping[str, Any]) -> None:
+        if not isinstance(actions, Mapping):
+            raise TypeError(f"actions: expected a dict, got {type(actions).__name__}")
         if actions.keys() != set(self.agents):
             wrong = sorted(actions.keys() - set(self.agents), key=str)
             missing = [a for a in self.agents if a not in actions]

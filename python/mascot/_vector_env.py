@@ -1,6 +1,7 @@
 """Many copies of a team as a VectorEnv of Gymnasium."""
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Sequence
 from typing import Any, Mapping
@@ -61,11 +62,8 @@ class VectorEnv(_Base):
     def __init__(self, file: str | os.PathLike[str], num_envs: int = 1, threads: int | None = None, *,
                  seed: int | None = None, set: Mapping[str, Any] | None = None, reward: Reward | None = None,
                  dtype: Any = "float32", autoreset_mode: Any = AutoresetMode.NEXT_STEP) -> None:
-        if num_envs < 1:
-            raise ValueError(f"num_envs: expected at least 1, got {num_envs}")
-        threads = len(os.sched_getaffinity(0)) if threads is None else threads
-        if threads < 1:
-            raise ValueError(f"threads: expected at least 1, got {threads}")
+        num_envs = _core.count_of("num_envs", num_envs)
+        threads = _core.count_of("threads", len(os.sched_getaffinity(0)) if threads is None else threads)
         self._dtype = _core.float_type(dtype)
         self._in_floats = self._dtype == np.float32
         self.autoreset_mode = _mode(autoreset_mode)
@@ -74,8 +72,8 @@ class VectorEnv(_Base):
                                             reward is not None)
         self._about = about = self._teams.about()
         self._reward = reward
-        self._seed = about["seed"] if seed is None else seed
         self.num_envs = num_envs
+        self._first_seeds: list[int | None] = self._seeds(about["seed"] if seed is None else seed)
         self.render_mode = None
         self.spec = None
         self.closed = False
@@ -110,10 +108,9 @@ class VectorEnv(_Base):
         changes = _core.sets(options["set"]) if "set" in options else None
         if mask.dtype != bool or mask.shape != (self.num_envs,) or not mask.any():
             raise ValueError(f"reset_mask: expected {self.num_envs} bools, one of them true, got {mask}")
-        first, self._seed = self._seed, None
-        if seed is None:
-            seed = first
-        observations = self._teams.reset(self._seeds(seed), changes, mask, self._in_floats)
+        seeds = [first if new is None else new for new, first in zip(self._seeds(seed), self._first_seeds)]
+        observations = self._teams.reset(seeds, changes, mask, self._in_floats)
+        self._first_seeds = [None if is_reset else first for is_reset, first in zip(mask, self._first_seeds)]
         self._needs_reset &= ~mask
         self._some_need_reset = bool(self._needs_reset.any())
         return observations, {}
@@ -144,6 +141,8 @@ class VectorEnv(_Base):
 
     def record(self, env: int, folder: str | os.PathLike[str], force: bool = False) -> None:
         """Records the next episode of environment `env` (from 0), as record() of `mascot.parallel_env()`."""
+        if not 0 <= operator.index(env) < self.num_envs:
+            raise IndexError(f"env: expected one from 0 to {self.num_envs - 1}, got {env}")
         self._teams.record(env, "folder", _core.path_of(folder), force)
 
     def state(self) -> np.ndarray:
@@ -165,7 +164,7 @@ class VectorEnv(_Base):
         if seed is None:
             return [None] * self.num_envs
         if not isinstance(seed, Sequence | np.ndarray):
-            return [_core.seed_of(seed) + k for k in range(self.num_envs)]
+            return [_core.seed_of(_core.seed_of(seed) + k) for k in range(self.num_envs)]
         seeds = [_core.seed_of(one) for one in seed]
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed: expected {self.num_envs} seeds, got {len(seeds)}")

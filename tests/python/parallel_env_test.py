@@ -242,6 +242,23 @@ class Rewards(TestCase):
         _, rewards, *_ = env.step({a: [0, k, 0] for k, a in enumerate(env.agents)})
         np.testing.assert_allclose(list(rewards.values()), env.state()[:, 2] + 10 * np.arange(4))
 
+    def test_one_that_fails_in_the_last_step_does_not_hide_that_it_was_the_last(self):
+        def fails_late(p, v, actions):
+            if env.time_s > 0.45:
+                raise KeyError("mine")
+            return 0.0
+
+        env = team(reward=fails_late)
+        env.reset()
+        failed = 0
+        while env.agents:
+            try:
+                env.step(still(env))
+            except KeyError:
+                failed += 1
+        self.assertEqual(failed, 5)
+        self.assertEqual(env.time_s, 0.5)
+
     def test_a_reward_of_another_shape_is_refused(self):
         env = team(reward=lambda p, v, action: p)
         env.reset()
@@ -280,6 +297,17 @@ class Seeds(TestCase):
                 steps += 1
             self.assertEqual(steps, 10)
             env.reset()
+
+
+    def test_what_is_refused_does_not_stay(self):
+        env = team(seed=5)
+        for wrong in ({"link.lost": 3}, {"agents.count": 3}):
+            with self.assertRaises(mascot.ConfigError):
+                env.reset(options={"set": wrong})
+            self.assertEqual(env.agents, [])
+        env.reset()
+        self.assertEqual(env.episode_seed, 5)
+        env.step(still(env))
 
 
 class Events(TestCase):
@@ -385,6 +413,20 @@ class Mistakes(TestCase):
         env.close()
         self.expect("event by hand: the episode is over", lambda: env.event(cut=[[1, 2]]))
         self.expect("actions: expected none, because no agent is left", lambda: env.step(actions))
+
+    def test_other_types_are_told_in_words(self):
+        env = team()
+        env.reset()
+        for words, call in [
+            ("actions: expected a dict, got list", lambda: env.step([1, 2])),
+            ("set: expected a dict, got 'x'", lambda: mascot.parallel_env(LEADERLESS, set="x")),
+            ('at: expected a str such as "127.0.0.1:8765", got 8765', lambda: env.view(8765)),
+            ("snapshot: expected a mascot.Snapshot, got NoneType", lambda: env.restore(None)),
+            ("seed: expected an integer, got 1.7", lambda: mascot.fly(LEADERLESS, seed=1.7)),
+        ]:
+            with self.assertRaises(TypeError, msg=words) as caught:
+                call()
+            self.assertEqual(str(caught.exception), words)
 
     def test_those_of_the_file_have_their_place(self):
         self.expect("set run.duration_s = -1: run.duration_s: expected", lambda: team(set={"run.duration_s": -1}),
@@ -533,6 +575,56 @@ class Pages(TestCase):
         # No proxy of the environment is asked for an address of this machine.
         with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(address, timeout=20) as answer:
             return answer.read().decode()
+
+
+class Processes(TestCase):
+    """Forks, and the end of the interpreter."""
+
+    def run_script(self, lines, code=0):
+        env = {**os.environ, "PYTHONPATH": str(BINARIES / "python")}
+        text = "import mascot, numpy as np, os, sys, threading, time\n" + lines.format(file=repr(LEADERLESS))
+        done = subprocess.run([sys.executable, "-c", text], env=env, timeout=60, stdout=subprocess.PIPE, check=False,
+                              stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(done.returncode, code, done.stdout)
+        return done.stdout
+
+    def test_the_interpreter_ends_while_a_thread_is_in_a_step(self):
+        for make in ("envs = mascot.vector_env({file}, 64, 1); step = lambda: envs.step(np.zeros((64, 4, 3)))",
+                     "envs = mascot.parallel_env({file}, set={{'run.duration_s': 1000.0}}); "
+                     "step = lambda: envs.step({{a: np.zeros(3) for a in envs.agents}})",
+                     "envs = mascot.parallel_env({file}); envs.view(':0', pace=1e-6, browser=False); "
+                     "step = lambda: envs.step({{a: np.zeros(3) for a in envs.agents}})"):
+            self.run_script(make + """
+envs.reset()
+begun = threading.Event()
+def fly():
+    while True:
+        begun.set()
+        step()
+threading.Thread(target=fly, daemon=True).start()
+begun.wait()
+sys.exit(7)
+""", code=7)
+
+    def test_a_fork_leaves_environments_to_its_parent(self):
+        for make in ("env = mascot.parallel_env({file}); env.view(':0', browser=False)",
+                     "env = mascot.vector_env({file}, 4, 2)"):
+            said = self.run_script(make + """
+env.reset()
+child = os.fork()
+if child == 0:
+    try:
+        env.reset()
+    except RuntimeError as error:
+        print(error, flush=True)
+    other = mascot.parallel_env({file})
+    other.reset()
+    sys.exit(3)
+assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 3
+env.reset()
+env.close()
+""")
+            self.assertEqual(said, "expected an environment that this process has made, got one of its parent\n")
 
 
 class TwoAtOnce(TestCase):

@@ -88,10 +88,18 @@ class Rules(TestCase):
         thread.join()
         self.assertGreater(counted[0], 0)
 
+    def test_each_keeps_its_first_seed_until_it_is_reset(self):
+        envs = teams(seed=100)
+        for mask in ([True, False, True], [False, True, False]):
+            envs.reset(options={"reset_mask": np.array(mask)})
+        self.assertEqual(envs.episode_seeds(), [100, 101, 102])
+        envs.reset()
+        self.assertNotIn(101, envs.episode_seeds())
+
     def test_seeds_by_number_by_list_and_from_those_before(self):
         envs = teams()
         envs.reset(seed=[5, 9, None])
-        self.assertEqual(envs.episode_seeds(), [5, 9, 1])  # the file has 1
+        self.assertEqual(envs.episode_seeds(), [5, 9, 3])  # the file has 1 for the first
         envs.reset(seed=3)
         self.assertEqual(envs.episode_seeds(), [3, 4, 5])
         envs.reset()
@@ -191,6 +199,21 @@ class Mistakes(TestCase):
             with self.assertRaises(ValueError, msg=words) as caught:
                 call()
             self.assertIn(words, str(caught.exception))
+
+    def test_other_types_are_told_in_words(self):
+        for error, words, call in [
+            (TypeError, "num_envs: expected an integer, got 2.5", lambda: teams(2.5)),
+            (TypeError, "threads: expected an integer, got 1.0", lambda: teams(threads=1.0)),
+            (TypeError, "seed: expected an integer, got 1.5", lambda: teams(seed=1.5)),
+            (ValueError, "seed: expected an integer in [0, 9223372036854775807], got -1", lambda: teams(seed=-1)),
+            (ValueError, "seed: expected an integer in [0, 9223372036854775807], got 9223372036854775808",
+             lambda: teams().reset(seed=2**63 - 1)),
+            (IndexError, "env: expected one from 0 to 2, got -1", lambda: teams().record(-1, "run")),
+            (IndexError, "env: expected one from 0 to 2, got 3", lambda: teams().record(3, "run")),
+        ]:
+            with self.assertRaises(error, msg=words) as caught:
+                call()
+            self.assertEqual(str(caught.exception), words)
 
     def test_one_reward_for_each_environment(self):
         envs = teams(reward=lambda p, v, action: 1.0)
