@@ -1,7 +1,6 @@
 // The module mascot._mascot: what mascot/*.py stands on. Arrays go in and out as NumPy's; while C++ computes, other
 // threads of Python run.
 #include <fmt/format.h>
-#include <pthread.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -550,7 +549,7 @@ py::tuple ArraysOf(const std::string& run) {
 
 PYBIND11_MODULE(_mascot, module) {
   using namespace mascot;
-  pthread_atfork(nullptr, nullptr, [] { ++forks; });
+  py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function([] { ++forks; }));
   py::module_::import("atexit").attr("register")(py::cpp_function(&OnEndOfInterpreter));
   py::register_exception<ConfigError>(module, "ConfigError", PyExc_ValueError);
   BindTeamEnv(module);
