@@ -183,6 +183,11 @@ void SetDiscovery(dds::DomainParticipantQos& qos, const DomainOptions& options) 
     builtin.discovery_config.discoveryProtocol = DiscoveryProtocol::SERVER;
     qos.wire_protocol().prefix = ServerPrefix(locator);
     builtin.metatrafficUnicastLocatorList.push_back(locator);
+    // A server answers those who come. At times of its own it would announce itself to all that it knows: Fast DDS 2.9
+    // ends the process by an assertion if that is just when it has heard of one, but cannot send to it yet.
+    builtin.discovery_config.initial_announcements.count = 0;
+    builtin.discovery_config.leaseDuration = eprosima::fastrtps::c_TimeInfinite;
+    builtin.discovery_config.leaseDuration_announcementperiod = eprosima::fastrtps::c_TimeInfinite;
     return;
   }
   builtin.initialPeersList.push_back(
