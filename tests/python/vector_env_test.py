@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 """vector_env(): Gymnasium's rules, autoreset modes, seeds, threads, words of errors."""
 
+import os
 import threading
 import unittest
 
 import numpy as np
+import onnx
 import support  # noqa: F401: the path of the module
-from support import LEADERLESS, TestCase, mascot
+from support import LEADERLESS, SOURCES, TestCase, mascot
 
 SHORT = {"run.duration_s": 0.2, "link.loss": 0.2}
 HALF = """
@@ -87,6 +89,22 @@ class Rules(TestCase):
         over.set()
         thread.join()
         self.assertGreater(counted[0], 0)
+
+    def test_what_a_law_throws_in_a_thread_arrives_with_its_words(self):
+        model = onnx.load(str(SOURCES / "configs/policy.onnx"))
+        answer = model.graph.output[0].name
+        for node in model.graph.node:
+            node.output[:] = ["before" if name == answer else name for name in node.output]
+        model.graph.node.append(onnx.helper.make_node("Sub", ["before", "before"], ["zero"]))
+        model.graph.node.append(onnx.helper.make_node("Div", ["zero", "zero"], [answer]))
+        onnx.save(model, "bad.onnx")
+        law = {"name": "policy", "file": os.path.abspath("bad.onnx")}
+        envs = teams(8, set={"agents.override": [{"id": 2, "law": law}]})
+        envs.reset()
+        for _ in range(2):
+            with self.assertRaisesRegex(RuntimeError, "^tick 0: agent 2: .*acceleration is not finite"):
+                envs.step(np.zeros(envs.action_space.shape))
+            envs.reset()
 
     def test_each_keeps_its_first_seed_until_it_is_reset(self):
         envs = teams(seed=100)
