@@ -110,10 +110,10 @@ auto Alone(Result (*method)(First, Arguments...)) {
 /// What a folder is called that is given as `argument` of a function in Python.
 RunFolder::Words WordsFor(const std::string& argument) { return {.out = argument, .force = "force=True"}; }
 
-/// When the interpreter ends, it ends each thread that asks for its lock, by unwinding, which C++ does not survive.
-/// Such a thread is to wait for the end of the process instead. Threads that take the lock right then are counted.
+/// When the interpreter ends, it ends each thread that asks for its lock, by unwinding the thread's stack, which C++
+/// does not survive. So a thread of ours that needs the lock then waits for the end of the process instead.
 std::atomic<unsigned long> ended_by = 0;  // the thread that ends the interpreter; 0: none does yet
-std::atomic<int> taking = 0;
+std::atomic<int> taking = 0;              // threads that are taking the lock: the interpreter waits for them
 
 /// Calls take(), which takes the lock of the interpreter.
 template <class Take>
@@ -171,16 +171,15 @@ class Signals {
   std::chrono::steady_clock::time_point next_ = {};
 };
 
-/// A handler of Python has raised in this thread while whoever steps an episode waited for viewers.
+/// A handler of a signal has raised in this thread since ComputeOrWait() has begun.
 thread_local bool has_raised = false;
 
-bool MayWait() {
+bool MayGoOn() {
   thread_local Signals signals;
   return !(has_raised = has_raised || signals.AreThere());
 }
 
-/// As Compute(), for what may wait for viewers: at Ctrl-C it ends as if they had waited no longer, and Python hears of
-/// it.
+/// As Compute(), for what takes long, or waits for viewers, and asks MayGoOn(): Python hears what a handler has raised.
 template <class Work>
 void ComputeOrWait(Work&& work) {
   has_raised = false;
@@ -340,7 +339,7 @@ void BindTeamEnv(py::module_& module) {
              return Compute([&] {
                return team.View({.at = ReadLiveAddress(at, "at"),
                                  .pace = pace,
-                                 .may_wait = MayWait,
+                                 .may_wait = MayGoOn,
                                  .log = [](const std::string& line) { fmt::print(stderr, "mascot: {}\n", line); }});
              });
            }))
@@ -502,19 +501,16 @@ void BindPolicy(py::module_& module) {
 /// Flies an experiment by its own laws, and records it. Returns the run's folder.
 std::string Fly(const std::string& path, const Sets& sets, const std::optional<std::string>& out, bool force) {
   EngineResult result;
-  bool is_interrupted = false;
-  const std::string folder = Compute([&] {
+  std::string folder;
+  ComputeOrWait([&] {
     const Experiment experiment = LoadExperiment(ReadInput(path), NameOfInput(path), OverridesOf(sets));
     RefuseActions(experiment);
     RefuseInProcess(experiment, path);
     EpisodeRecord record(out, experiment, force, WordsFor("out"));
-    Signals signals;
-    const auto goes_on = [&] { return !(is_interrupted = is_interrupted || signals.AreThere()); };
-    result = RunInProcess(experiment, record.Begin(experiment), goes_on);
+    result = RunInProcess(experiment, record.Begin(experiment), MayGoOn);
     record.End(result);
-    return record.folder().string();
+    folder = record.folder().string();
   });
-  if (is_interrupted) throw py::error_already_set();
   if (!result.failure.empty()) throw std::runtime_error(result.failure);
   return folder;
 }

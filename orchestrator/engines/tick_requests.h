@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "experiment/experiment.h"
 #include "orchestrator/control/run_requests.h"

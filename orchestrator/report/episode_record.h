@@ -17,7 +17,7 @@ class EpisodeRecord final : public EpisodeWitness {
  public:
   /// Creates the folder `out`, as RunFolder does, for an episode of `experiment`, or of one with other values.
   EpisodeRecord(const std::optional<std::string>& out, const Experiment& experiment, bool force,
-                const RunFolder::Words& words = RunFolder::Words());
+                const RunFolder::Words& words);
   ~EpisodeRecord() override;
 
   std::vector<RowSink*> Begin(const Experiment& experiment) override;

@@ -49,14 +49,18 @@ def _quoted(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")  # TOML's strings have the same escapes
 
 
+def integer(what: str, number: Any) -> int:
+    try:
+        return operator.index(number)
+    except TypeError:
+        raise TypeError(f"{what}: expected an integer, got {number!r}") from None
+
+
 def seed_of(seed: Any) -> int | None:
     """A seed as run.seed takes it; None stays None."""
     if seed is None:
         return None
-    try:
-        number = operator.index(seed)
-    except TypeError:
-        raise TypeError(f"seed: expected an integer, got {seed!r}") from None
+    number = integer("seed", seed)
     if not 0 <= number < 2**63:
         raise ValueError(f"seed: expected an integer in [0, {2**63 - 1}], got {number}")
     return number
@@ -64,10 +68,7 @@ def seed_of(seed: Any) -> int | None:
 
 def count_of(what: str, number: Any) -> int:
     """`number` as an integer of at least 1."""
-    try:
-        count = operator.index(number)
-    except TypeError:
-        raise TypeError(f"{what}: expected an integer, got {number!r}") from None
+    count = integer(what, number)
     if count < 1:
         raise ValueError(f"{what}: expected at least 1, got {count}")
     return count

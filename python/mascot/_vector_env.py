@@ -1,7 +1,6 @@
 """Many copies of a team as a VectorEnv of Gymnasium."""
 from __future__ import annotations
 
-import operator
 import os
 from collections.abc import Sequence
 from typing import Any, Mapping
@@ -141,7 +140,7 @@ class VectorEnv(_Base):
 
     def record(self, env: int, folder: str | os.PathLike[str], force: bool = False) -> None:
         """Records the next episode of environment `env` (from 0), as record() of `mascot.parallel_env()`."""
-        if not 0 <= operator.index(env) < self.num_envs:
+        if not 0 <= _core.integer("env", env) < self.num_envs:
             raise IndexError(f"env: expected one from 0 to {self.num_envs - 1}, got {env}")
         self._teams.record(env, "folder", _core.path_of(folder), force)
 

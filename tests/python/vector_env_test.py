@@ -226,6 +226,7 @@ class Mistakes(TestCase):
             (ValueError, "seed: expected an integer in [0, 9223372036854775807], got -1", lambda: teams(seed=-1)),
             (ValueError, "seed: expected an integer in [0, 9223372036854775807], got 9223372036854775808",
              lambda: teams().reset(seed=2**63 - 1)),
+            (TypeError, "env: expected an integer, got 1.0", lambda: teams().record(1.0, "run")),
             (IndexError, "env: expected one from 0 to 2, got -1", lambda: teams().record(-1, "run")),
             (IndexError, "env: expected one from 0 to 2, got 3", lambda: teams().record(3, "run")),
         ]:
