@@ -127,6 +127,12 @@ void TakeInterpreter(Take&& take) {
   --taking;
 }
 
+/// In the child process, which has the thread that forked, and no other.
+void OnFork() {
+  ++forks;
+  taking = 0;
+}
+
 void OnEndOfInterpreter() {
   ended_by = PyThread_get_thread_ident();
   const py::gil_scoped_release release;
@@ -545,7 +551,7 @@ py::tuple ArraysOf(const std::string& run) {
 
 PYBIND11_MODULE(_mascot, module) {
   using namespace mascot;
-  py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function([] { ++forks; }));
+  py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function(&OnFork));
   py::module_::import("atexit").attr("register")(py::cpp_function(&OnEndOfInterpreter));
   py::register_exception<ConfigError>(module, "ConfigError", PyExc_ValueError);
   BindTeamEnv(module);

@@ -626,6 +626,27 @@ env.close()
 """)
             self.assertEqual(said, "expected an environment that this process has made, got one of its parent\n")
 
+    def test_a_fork_ends_although_a_thread_of_its_parent_was_in_a_step(self):
+        self.run_script("""
+envs = mascot.vector_env({file}, 1, 1)
+envs.reset()
+over, begun = threading.Event(), threading.Event()
+def fly():
+    while not over.is_set():
+        envs.step(np.zeros((1, 4, 3)))
+        begun.set()
+flying = threading.Thread(target=fly)
+flying.start()
+begun.wait()
+for _ in range(20):
+    child = os.fork()
+    if child == 0:
+        sys.exit(3)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 3
+over.set()
+flying.join()
+""")
+
 
 class TwoAtOnce(TestCase):
     def test_environments_do_not_know_of_each_other(self):
