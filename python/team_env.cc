@@ -9,6 +9,7 @@
 
 #include "agent/laws/laws.h"
 #include "experiment/toml/section.h"
+#include "orchestrator/engines/driven_agents.h"
 #include "orchestrator/measuring/agreement_meter.h"
 
 namespace mascot {
@@ -19,15 +20,9 @@ constexpr double kUnit = 1 + 1e-6;                    // components of unit quat
 constexpr double kMaxWeight = 1e6;                    // of graph.edges
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
 
-std::vector<int> AgentsThatAct(const Experiment& experiment) {
-  std::vector<int> ids;
-  for (const AgentConfig& agent : experiment.agents) {
-    if (!agent.takes_actions) continue;
-    if (agent.law.params->action == 0)
-      throw ConfigError({fmt::format("agent {}: expected a law that takes actions from the start on, or never, got {}",
-                                     agent.id, agent.law.name)});
-    ids.push_back(agent.id);
-  }
+/// AgentsThatAct(), of which there must be one.
+std::vector<int> Drivable(const Experiment& experiment) {
+  std::vector<int> ids = AgentsThatAct(experiment);
   if (ids.empty())
     throw ConfigError(
         {"expected agents that take actions, got none: the laws of the file, and what is set, decide for all"});
@@ -94,9 +89,10 @@ std::vector<double> ObservationHigh(const Experiment& experiment, const Observat
 
 }  // namespace
 
-TeamEnv::TeamEnv(std::string text, std::string path, std::vector<Override> overrides, Episodes::Keeps keeps)
-    : episodes_(std::move(text), std::move(path), std::move(overrides), keeps) {
-  ids_ = AgentsThatAct(experiment());
+TeamEnv::TeamEnv(const std::string& text, const std::string& path, std::vector<Override> overrides,
+                 Episodes::Keeps keeps)
+    : episodes_(text, path, WithDrivenTeam(text, path, std::move(overrides)), keeps) {
+  ids_ = Drivable(experiment());
   for (const int id : ids_) {
     high_.push_back(ActionHigh(experiment().agent(id)));
     action_size_ = std::max(action_size_, high_.back().size());
@@ -109,7 +105,7 @@ TeamEnv::TeamEnv(std::string text, std::string path, std::vector<Override> overr
 }
 
 void TeamEnv::Begin() {
-  const std::vector<int> ids = AgentsThatAct(experiment());
+  const std::vector<int> ids = Drivable(experiment());
   bool fits = ids == ids_ && experiment().agents.size() == agents_of_team_ &&
               LayoutOf(experiment(), layout_.message) == layout_;
   for (std::size_t k = 0; fits && k < ids.size(); ++k)

@@ -21,8 +21,9 @@ namespace mascot {
 /// one thread at a time. Numbers are doubles; vectors are in W, in SI units.
 class TeamEnv {
  public:
-  /// As Episodes. Throws ConfigError, also if nobody takes actions.
-  TeamEnv(std::string text, std::string path, std::vector<Override> overrides,
+  /// As Episodes. If no agent of the file takes actions, all agents do that have no law of their own. Throws
+  /// ConfigError, also if nobody takes actions.
+  TeamEnv(const std::string& text, const std::string& path, std::vector<Override> overrides,
           Episodes::Keeps keeps = Episodes::Keeps::kHistory);
 
   /// The agents that take actions, by increasing id: the others fly by laws of their own.

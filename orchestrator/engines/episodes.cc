@@ -16,35 +16,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The law table of the team, with the law that actions drive in the place of its own.
-Override DrivenLaw(const std::string& text, const std::string& path) {
-  const auto driven = std::ranges::find(Laws(), true, &LawEntry::is_driven);
-  Section law = Section::FromText(text, path).Child("law");
-  const Value::Table before = law.InTheFile();
-  const auto name = before.find("name");
-  const auto* named = name == before.end() ? nullptr : std::get_if<std::string>(&name->second.data);
-  const auto entry = std::ranges::find_if(Laws(), [&](const LawEntry& any) { return named && any.name == *named; });
-  Value::Table table;
-  table["name"].data = std::string(driven->name);
-  table["axes"].data = std::string(kAxes.Name(entry == Laws().end() ? Laws().front().axes : entry->axes));
-  for (const char* const kept : {"axes", "safety"})
-    if (const auto found = before.find(kept); found != before.end()) table[kept] = found->second;
-  Value value;
-  value.data = std::move(table);
-  return {.key = "law", .value = ToToml(value), .origin = "the law that takes actions"};
-}
-
 bool AreEqual(std::span<const Override> some, std::span<const Override> others) {
   return std::ranges::equal(some, others, [](const Override& one, const Override& other) {
     return one.key == other.key && one.value == other.value && one.removes == other.removes;
   });
-}
-
-/// Whether the experiment is legal as it is, and somebody takes actions in it.
-bool TakesActionsAsItIs(const std::string& text, const std::string& path, std::span<const Override> overrides) try {
-  return TakesActions(LoadExperiment(text, path, overrides, UserCode::kNeverRuns));
-} catch (const ConfigError&) {  // perhaps because of keys for the law that takes them
-  return false;
 }
 
 }  // namespace
@@ -53,7 +28,6 @@ bool EpisodeWitness::Await(Episodes& /*episodes*/) { return true; }
 
 Episodes::Episodes(std::string text, std::string path, std::vector<Override> overrides, Keeps keeps)
     : text_(std::move(text)), path_(std::move(path)), overrides_(std::move(overrides)), keeps_(keeps) {
-  if (!TakesActionsAsItIs(text_, path_, overrides_)) overrides_.insert(overrides_.begin(), DrivenLaw(text_, path_));
   std::string all = text_;
   for (const Override& override : overrides_) all += '\n' + override.key + " = " + override.value;
   identity_ = Fnv1a(all);

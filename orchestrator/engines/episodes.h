@@ -36,9 +36,7 @@ class EpisodeWitness {
 };
 
 /// Flights of one experiment, one after the other, each of which somebody steps: he sees what the agents perceive at a
-/// tick, gives actions to those whose laws take them, and goes on to the next tick. If no agent of the file takes
-/// actions, all agents do that have no law of their own: the law that actions drive stands in the place of the team's,
-/// with its axes and its safety filter.
+/// tick, gives actions to those whose laws take them, and goes on to the next tick.
 class Episodes {
  public:
   /// Whether Save() is wanted: what was given to an episode is kept for it.

@@ -98,23 +98,6 @@ TEST(Episodes, ThatKeepNoHistoryAreNotSaved) {
   EXPECT_THAT([&] { episodes.Save(); }, ThrowsMessage<std::logic_error>("a snapshot of episodes without a history"));
 }
 
-TEST(Episodes, TheLawThatActionsDriveStandsInThePlaceOfTheTeams) {
-  const Episodes episodes(TwoOf("name = 'flocking'\np_gain = 1\nsafety = { distance_m = 0.7 }\n"
-                                "[[agents.override]]\nid = 2\nlaw = { name = 'consensus' }\n"),
-                          "pair.toml", {{.key = "law.message", .value = "2"}});
-  const Experiment& experiment = episodes.experiment();
-  EXPECT_EQ(experiment.agent(1).law.params->action, 5u);
-  EXPECT_EQ(experiment.agent(1).law.safety->distance_m, 0.7);
-  EXPECT_FALSE(experiment.agent(2).takes_actions);
-}
-
-TEST(Episodes, ThoseOfAFileInWhichSomeTakeActionsAreOfThatFile) {
-  const Episodes episodes(TwoOf("name = 'consensus'\n[[agents.override]]\nid = 2\nlaw = { name = 'actions' }\n"),
-                          "pair.toml", {});
-  EXPECT_FALSE(episodes.experiment().agent(1).takes_actions);
-  EXPECT_TRUE(episodes.experiment().agent(2).takes_actions);
-}
-
 TEST(Episodes, AreSeenFromTheirStartOnIfTheyMove) {
   Seen seen;
   Waves waves(1);
