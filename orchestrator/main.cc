@@ -36,6 +36,7 @@ constexpr VerbEntry kVerbs[] = {
     {"runs", "list the runs in a folder, remove some, keep notes", SetUpRuns},
     {"plot", "draw the pictures of a run again", SetUpPlot},
     {"view", "play a recording on the page of a run", SetUpView},
+    {"serve", "let another program step a team: MATLAB, Simulink, or any that speaks JSON", SetUpServe},
     {"sweep", "run an experiment over values of its keys and seeds: a table, a picture", SetUpSweep},
     {"tune", "search for the values of keys that make a figure smallest or largest", SetUpTune},
     {"compare", "the summaries of several runs side by side", SetUpCompare},

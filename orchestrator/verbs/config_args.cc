@@ -24,14 +24,21 @@ void ConfigArgs::AddTo(CLI::App& command) {
   command.add_option("--seed", seed, "in place of run.seed")->type_name("N");
 }
 
-Experiment ConfigArgs::Load(UserCode user_code) {
+const std::string& ConfigArgs::Text() {
   if (!text_) text_ = ReadInput(path);
-  const std::string name = NameOfInput(path);
+  return *text_;
+}
+
+std::string ConfigArgs::Name() const { return NameOfInput(path); }
+
+std::vector<Override> ConfigArgs::Overrides() const {
   std::vector<Override> all;
   for (const std::string& set : sets) all.push_back(ParseOverride(set));
   if (duration_s) all.push_back({"run.duration_s", *duration_s, "--duration-s " + *duration_s});
   if (seed) all.push_back({"run.seed", *seed, "--seed " + *seed});
-  return LoadExperiment(*text_, name, all, user_code);
+  return all;
 }
+
+Experiment ConfigArgs::Load(UserCode user_code) { return LoadExperiment(Text(), Name(), Overrides(), user_code); }
 
 }  // namespace mascot

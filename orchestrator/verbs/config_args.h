@@ -27,6 +27,11 @@ struct ConfigArgs {
   /// Throws ConfigError.
   Experiment Load(UserCode user_code = UserCode::kMayRun);
 
+  /// The text of the experiment, as Load() reads it, and what the arguments change in it. Throws ConfigError.
+  const std::string& Text();
+  std::string Name() const;  ///< of the file, for messages
+  std::vector<Override> Overrides() const;
+
  private:
   std::optional<std::string> text_;
 };

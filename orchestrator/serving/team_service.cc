@@ -1,0 +1,397 @@
+#include "orchestrator/serving/team_service.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "agent/laws/laws.h"
+#include "base/utf8.h"
+#include "experiment/toml/section.h"
+#include "orchestrator/control/json_toml.h"
+#include "orchestrator/engines/driven_agents.h"
+#include "orchestrator/formats/outside_fields.h"
+#include "orchestrator/formats/outside_json.h"
+#include "orchestrator/live/shown/shown_keys.h"
+#include "orchestrator/measuring/agreement_meter.h"
+#include "orchestrator/measuring/separation.h"
+#include "orchestrator/serving/snapshot_text.h"
+
+namespace mascot {
+namespace {
+
+using Json = TeamService::Json;
+
+/// A kind of request, and the fields that it may have.
+struct RequestKind {
+  std::string_view name;
+  bool changes = true;
+  std::vector<std::string_view> fields = {};
+};
+
+const std::vector<RequestKind>& RequestKinds() {
+  static const std::vector<RequestKind> kinds = {
+      {"hello", false, {"protocol", "form"}},
+      {"look", false},
+      {"reset", true, {"seed", "set", "ports"}},
+      {"step", true, {"actions", "ticks"}},
+      {"set", true, {"set", "agents"}},
+      {"goto", true, {"agent", "position_m"}},
+      {"event", true, {"event"}},
+      {"snapshot", false, {"form"}},
+      {"restore", true, {"snapshot", "text"}},
+      {"forget", false, {"snapshot"}},
+      {"close", false},
+  };
+  return kinds;
+}
+
+std::string OrNearest(std::string_view word, std::span<const std::string_view> names) {
+  const auto near = DidYouMean(word, names);
+  return near ? fmt::format(" (did you mean \"{}\"?)", *near) : std::string();
+}
+
+/// The kind of a request, all of whose fields it may have.
+const RequestKind& KindOf(const Json& request) {
+  OutsideFields fields(request);
+  const std::string name = fields.Text("request", 100);
+  fields.Require();
+  std::vector<std::string_view> names;
+  for (const RequestKind& kind : RequestKinds()) names.push_back(kind.name);
+  const auto kind = std::ranges::find(RequestKinds(), name, &RequestKind::name);
+  if (kind == RequestKinds().end())
+    throw std::invalid_argument(
+        fmt::format("expected a known \"request\", got \"{}\"{}", name, OrNearest(name, names)));
+  for (const auto& [field, value] : request.items()) {
+    if (field == "request" || field == "id" || std::ranges::find(kind->fields, field) != kind->fields.end()) continue;
+    throw std::invalid_argument(fmt::format("{}: unknown field \"{}\"{}", name, field, OrNearest(field, kind->fields)));
+  }
+  return *kind;
+}
+
+/// {"law.p_gain": 0.1} as overrides.
+std::vector<Override> SetsIn(const Json& set) {
+  if (!set.is_object()) throw std::invalid_argument("expected an object of keys and values as \"set\"");
+  std::vector<Override> sets;
+  for (const auto& [key, value] : set.items()) {
+    std::string text = ToToml(ValueOf(value));
+    std::string origin = fmt::format("set {} = {}", key, Shortened(text, 100));
+    sets.push_back({.key = key, .value = std::move(text), .origin = std::move(origin)});
+  }
+  return sets;
+}
+
+std::vector<int> PortsIn(const Json& list) {
+  std::vector<int> ports;
+  for (const Json& id : list)
+    ports.push_back(id.is_number_integer() && id >= 1 && id <= kMaxAgents ? id.get<int>() : 0);
+  std::ranges::sort(ports);
+  if (!list.is_array() || std::ranges::count(ports, 0) > 0 || std::ranges::adjacent_find(ports) != ports.end())
+    throw std::invalid_argument("expected a list of different agents as \"ports\"");
+  return ports;
+}
+
+/// The action of a port, which has so many numbers.
+std::vector<double> ActionIn(const Json& list, const TeamService::Port& port) {
+  std::vector<double> numbers;
+  for (const Json& number : list)
+    if (number.is_number()) numbers.push_back(number.get<double>());
+  if (!list.is_array() || numbers.size() != list.size() || numbers.size() != port.numbers)
+    throw std::invalid_argument(fmt::format("actions: expected a list of {} numbers for agent {}, got {}", port.numbers,
+                                            port.agent, Shortened(list.dump(-1, ' ', true), 100)));
+  return numbers;
+}
+
+Json ListOf(std::span<const double> numbers) { return std::vector<double>(numbers.begin(), numbers.end()); }
+
+/// The overrides of the user, without those of the request: all must fit together.
+std::vector<Override> Joined(std::vector<Override> some, std::span<const Override> others) {
+  some.insert(some.end(), others.begin(), others.end());
+  return some;
+}
+
+}  // namespace
+
+TeamService::TeamService(Options options)
+    : options_(std::move(options)),
+      asked_ports_(options_.ports),
+      episodes_(options_.text, options_.path, options_.overrides) {
+  if (options_.out) episodes_.SetWitnesses({&records_.emplace(*options_.out)});
+  if (!asked_ports_.empty()) episodes_.Reset(Changes());
+  Begin();
+}
+
+bool TeamService::IsChange(const std::string& request) {
+  const auto kind = std::ranges::find(RequestKinds(), request, &RequestKind::name);
+  return kind != RequestKinds().end() && kind->changes;
+}
+
+std::size_t TeamService::action_numbers() const {
+  std::size_t numbers = 0;
+  for (const Port& port : ports_) numbers += port.numbers;
+  return numbers;
+}
+
+std::vector<Override> TeamService::Changes() const {
+  std::vector<Override> changes;
+  if (!asked_ports_.empty())
+    changes.push_back(DrivenAgents(options_.text, options_.path, Joined(options_.overrides, sets_), asked_ports_));
+  changes.insert(changes.end(), sets_.begin(), sets_.end());
+  if (seed_) changes.push_back({.key = "run.seed", .value = std::to_string(*seed_), .origin = "seed"});
+  return changes;
+}
+
+void TeamService::Begin() {
+  ports_.clear();
+  for (const int id : AgentsThatAct(episodes_.experiment()))
+    ports_.push_back({id, episodes_.experiment().agent(id).law.params->action});
+}
+
+Json TeamService::Answer(const Json& request) {
+  const std::string kind(KindOf(request).name);
+  Json answer{{"answer", kind}};
+  if (request.contains("id")) answer["id"] = request["id"];
+  if (kind == "hello") answer.update(Hello());
+  if (kind == "reset") answer.update(Reset(request));
+  if (kind == "step") answer.update(Step(request));
+  if (kind == "set" || kind == "goto") {
+    Json event = request;
+    event.erase("request");
+    event.erase("id");
+    answer.update(Take(kind == "set" ? event : Json{{"goto", event}}));
+  }
+  if (kind == "event") answer.update(Take(request.value("event", Json())));
+  if (kind == "snapshot") answer.update(Save(request));
+  if (kind == "restore") answer.update(Restore(request));
+  if (kind == "forget") answer.update(Forget(request));
+  if (kind == "look") answer.update(State());
+  return answer;
+}
+
+Json TeamService::Hello() const {
+  const Experiment& experiment = episodes_.experiment();
+  Json ports = Json::array(), keys = Json::array(), figures = Json::array();
+  for (const Port& port : ports_) {
+    const bool velocity = WantedBy(experiment.agent(port.agent).law) == Wanted::kVelocity;
+    ports.push_back({{"agent", port.agent},
+                     {"numbers", port.numbers},
+                     {"wants", velocity ? "velocity" : "acceleration"},
+                     {"unit", velocity ? "m/s" : "m/s^2"}});
+  }
+  for (const ShownKey& key : ShownKeysOf(experiment))
+    keys.push_back({{"key", key.name},
+                    {"value", JsonOrNull<Json>(key.value)},
+                    {"unit", key.row.unit},
+                    {"meaning", std::string(key.row.meaning)}});
+  for (const Figure& figure : FigureTable())
+    figures.push_back({{"name", figure.name}, {"unit", figure.unit}, {"meaning", figure.description}});
+  return {{"protocol", kServeProtocol},
+          {"mascot", MASCOT_VERSION},
+          {"name", experiment.run.name},
+          {"engine", kInProcess},
+          {"agents", experiment.size()},
+          {"rate_hz", experiment.control.rate_hz},
+          {"ticks", experiment.ticks()},
+          {"duration_s", experiment.run.duration_s},
+          {"seed", experiment.run.seed},
+          {"ports", std::move(ports)},
+          {"units", {{"p", "m"}, {"v", "m/s"}, {"attitude", "1"}, {"w", "rad/s"}}},
+          {"figures", std::move(figures)},
+          {"keys", std::move(keys)}};
+}
+
+void TeamService::StateTo(int agent, std::span<double, kStateSize> to) const {
+  const Motion& motion = episodes_.row().motions[static_cast<std::size_t>(agent - 1)];
+  Eigen::Map<Eigen::Vector3d>(to.data() + 0) = motion.p_WB;
+  Eigen::Map<Eigen::Vector3d>(to.data() + 3) = motion.v_WB;
+  Eigen::Map<Eigen::Vector4d>(to.data() + 6) = (motion.q_WB.w() < 0 ? -1 : 1) * motion.q_WB.coeffs();  // x, y, z, w
+  Eigen::Map<Eigen::Vector3d>(to.data() + 10) = motion.w_WB_B;
+}
+
+const std::vector<TeamService::Figure>& TeamService::FigureTable() {
+  static const std::vector<Figure> table = {
+      {"disagreement_m", "m", "largest distance of an agent from what the team agrees on, along law.axes"},
+      {"separation_m", "m", "smallest distance of two agents"},
+  };
+  return table;
+}
+
+std::vector<double> TeamService::Figures() const {
+  const std::vector<Motion>& motions = episodes_.row().motions;
+  Separation separation;
+  separation.Add(motions, std::vector<Axes>(motions.size(), Axes::kXyz));
+  const double nearest_m = separation.in_space_m();
+  return {DisagreementOf(episodes_.now(), motions),
+          std::isfinite(nearest_m) ? nearest_m : std::numeric_limits<double>::quiet_NaN()};
+}
+
+Json TeamService::State() const {
+  const Experiment& experiment = episodes_.experiment();
+  Json p = Json::array(), v = Json::array(), attitude = Json::array(), w = Json::array(), heard = Json::array(),
+       lost = Json::array(), figures = Json::object();
+  for (int id = 1; id <= experiment.size(); ++id) {
+    std::array<double, kStateSize> numbers{};
+    StateTo(id, numbers);
+    const std::span<const double> all(numbers);
+    p.push_back(ListOf(all.subspan(0, 3)));
+    v.push_back(ListOf(all.subspan(3, 3)));
+    attitude.push_back(ListOf(all.subspan(6, 4)));
+    w.push_back(ListOf(all.subspan(10, 3)));
+    Json ids = Json::array();
+    const Agent& agent = episodes_.agent(id);
+    for (const Heard& one : agent.heard()) ids.push_back(one.id);
+    heard.push_back(std::move(ids));
+    if (agent.is_lost()) lost.push_back(id);
+  }
+  const std::vector<double> values = Figures();
+  for (std::size_t k = 0; k < values.size(); ++k) figures[FigureTable()[k].name] = values[k];
+  Json state{{"tick", episodes_.tick()},
+             {"t_s", experiment.time_s(episodes_.tick())},
+             {"over", episodes_.is_over()},
+             {"failure", episodes_.failure()},
+             {"p", std::move(p)},
+             {"v", std::move(v)},
+             {"attitude", std::move(attitude)},
+             {"w", std::move(w)},
+             {"heard", std::move(heard)},
+             {"lost", std::move(lost)},
+             {"figures", std::move(figures)}};
+  if (records_) state["recording"] = records_->newest().string();
+  return state;
+}
+
+Json TeamService::Reset(const Json& request) {
+  const auto before = std::make_tuple(seed_, sets_, asked_ports_);
+  seed_.reset();
+  if (request.contains("seed")) {
+    OutsideFields fields(request);
+    seed_ = static_cast<std::uint64_t>(fields.Integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
+    fields.Require();
+  }
+  try {
+    if (request.contains("set")) sets_ = SetsIn(request["set"]);
+    if (request.contains("ports")) asked_ports_ = PortsIn(request["ports"]);
+    episodes_.Reset(Changes());
+  } catch (...) {
+    std::tie(seed_, sets_, asked_ports_) = before;
+    throw;
+  }
+  Begin();
+  return State();
+}
+
+std::vector<std::vector<double>> TeamService::ActionsIn(const Json& actions) const {
+  std::vector<std::vector<double>> of_ports(ports_.size());
+  if (actions.is_null()) return of_ports;
+  if (actions.is_object()) {
+    for (const auto& item : actions.items()) {
+      const std::string& name = item.key();
+      const auto port =
+          std::ranges::find_if(ports_, [&](const Port& any) { return name == std::to_string(any.agent); });
+      if (port == ports_.end())
+        throw std::invalid_argument(fmt::format(
+            "actions: agent {} takes none; it would with `orchestrator serve --ports`, or \"ports\" of a reset",
+            Shortened(PlainLine(name), 20)));
+      of_ports[static_cast<std::size_t>(port - ports_.begin())] = ActionIn(item.value(), *port);
+    }
+    return of_ports;
+  }
+  if (!actions.is_array()) throw std::invalid_argument("expected a list or an object as \"actions\"");
+  const bool is_flat = ports_.size() == 1 && !actions.empty() && actions.front().is_number();
+  if (is_flat) return {ActionIn(actions, ports_.front())};
+  if (actions.size() != ports_.size())
+    throw std::invalid_argument(
+        fmt::format("actions: expected one for each of {} ports, got {}", ports_.size(), actions.size()));
+  for (std::size_t k = 0; k < ports_.size(); ++k)
+    if (!actions[k].is_null()) of_ports[k] = ActionIn(actions[k], ports_[k]);
+  return of_ports;
+}
+
+Json TeamService::Step(const Json& request) {
+  std::int64_t ticks = 1;
+  if (request.contains("ticks")) {
+    OutsideFields fields(request);
+    ticks = fields.Integer("ticks", 0, kMostTicks);
+    fields.Require();
+  }
+  const auto actions = ActionsIn(request.value("actions", Json()));
+  for (std::size_t k = 0; k < ports_.size(); ++k)
+    if (!actions[k].empty()) Act(ports_[k], actions[k]);
+  Step(ticks, {});
+  return State();
+}
+
+void TeamService::Act(const Port& port, std::span<const double> action) {
+  if (!episodes_.agent(port.agent).is_lost() && episodes_.now().agent(port.agent).law.params->action > 0)
+    episodes_.Act(port.agent, action);
+}
+
+void TeamService::Step(std::int64_t ticks, std::span<const double> actions) {
+  if (!actions.empty() && actions.size() != action_numbers())
+    throw std::invalid_argument(
+        fmt::format("actions: expected {} numbers, or none, got {}", action_numbers(), actions.size()));
+  if (!actions.empty())
+    for (const Port& port : ports_) {
+      Act(port, actions.first(port.numbers));
+      actions = actions.subspan(port.numbers);
+    }
+  if (ticks > 0 && episodes_.is_over()) episodes_.Step();  // which says so
+  for (; ticks > 0 && !episodes_.is_over() && (!options_.may_go_on || options_.may_go_on()); --ticks) episodes_.Step();
+}
+
+Json TeamService::Take(const Json& event) {
+  if (!event.is_object()) throw std::invalid_argument("expected an object as \"event\"");
+  std::string toml;  // a key on each line
+  for (const auto& [key, value] : event.items()) {
+    Value name;
+    name.data = key;
+    toml += (toml.empty() ? "" : "\n") + ToToml(name) + " = " + ToToml(ValueOf(value));
+  }
+  episodes_.Take(toml);
+  return {{"tick", episodes_.tick() + 1}};
+}
+
+Json TeamService::Save(const Json& request) {
+  const std::string form = request.value("form", Json("number")).is_string() ? request.value("form", "number") : "";
+  if (form == "text") return {{"tick", episodes_.tick()}, {"text", TextOf(episodes_.Save())}};
+  if (form != "number") throw std::invalid_argument("expected \"number\" or \"text\" as \"form\"");
+  if (snapshots_.size() == kMostSnapshots)
+    throw std::runtime_error(fmt::format("{} snapshots are kept: forget one first", kMostSnapshots));
+  snapshots_[next_snapshot_] = episodes_.Save();
+  return {{"tick", episodes_.tick()}, {"snapshot", next_snapshot_++}};
+}
+
+Json TeamService::Restore(const Json& request) {
+  OutsideFields fields(request);
+  if (request.contains("text")) {
+    const std::string text = fields.Text("text", std::size_t{1} << 24);
+    fields.Require();
+    episodes_.Restore(SnapshotFrom(text), [] {});
+  } else {
+    episodes_.Restore(SnapshotOf(request)->second, [] {});
+  }
+  Begin();
+  return State();
+}
+
+Json TeamService::Forget(const Json& request) {
+  snapshots_.erase(SnapshotOf(request));
+  return Json::object();
+}
+
+std::map<std::int64_t, Episodes::Snapshot>::const_iterator TeamService::SnapshotOf(const Json& request) const {
+  OutsideFields fields(request);
+  const std::int64_t number = fields.Integer("snapshot", 1, std::numeric_limits<std::int64_t>::max());
+  fields.Require();
+  const auto found = snapshots_.find(number);
+  if (found == snapshots_.end()) throw std::invalid_argument(fmt::format("there is no snapshot {}", number));
+  return found;
+}
+
+}  // namespace mascot

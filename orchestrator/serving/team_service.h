@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "orchestrator/engines/episodes.h"
+#include "orchestrator/serving/recorded_series.h"
+
+namespace mascot {
+
+/// The version of the words between clients and server (docs/serve.md).
+inline constexpr int kServeProtocol = 1;
+
+/// A team that waits to be stepped, and what clients ask of it: requests in, answers out, without sockets and threads.
+class TeamService {
+ public:
+  using Json = nlohmann::ordered_json;
+  struct Options {
+    std::string text, path;  ///< of the experiment
+    std::vector<Override> overrides = {};
+    std::vector<int> ports = {};           ///< agents that take actions, besides those that do by the file
+    std::optional<std::string> out = {};   ///< every episode is recorded as a run in this folder: "1", "2", ...
+    std::function<bool()> may_go_on = {};  ///< asked before each tick; false: a step ends early. Empty: always true
+  };
+  /// The first episode is at its tick 0. Throws what Episodes throws.
+  explicit TeamService(Options options);
+
+  /// An agent that takes actions.
+  struct Port {
+    int agent = 0;
+    std::size_t numbers = 0;  ///< of an action: 3 of what the agent wants, and those of its message
+  };
+  const std::vector<Port>& ports() const { return ports_; }
+  /// How many numbers the actions of all ports have together.
+  std::size_t action_numbers() const;
+  const Episodes& episodes() const { return episodes_; }
+
+  /// Whether the request changes something, so that one client alone may make it.
+  static bool IsChange(const std::string& request);
+  /// Answers a request ({"request": ...}), which is an object. Throws JsonError, ConfigError, std::invalid_argument and
+  /// std::runtime_error with words for the client; then the team is as before, or its episode has ended.
+  Json Answer(const Json& request);
+  /// Goes on by at most `ticks` ticks, with these actions of all ports, one after the other; none: those before hold.
+  /// Throws as Answer() does.
+  void Step(std::int64_t ticks, std::span<const double> actions);
+
+  /// Largest number of ticks of one step, and of snapshots that are kept.
+  static constexpr std::int64_t kMostTicks = 1'000'000;
+  static constexpr std::size_t kMostSnapshots = 256;
+  /// Numbers of a state, by agent: p (3, m), v (3, m/s), attitude (4: x, y, z, w with w >= 0 of the unit quaternion
+  /// that takes B to W), angular velocity in B (3, rad/s).
+  static constexpr std::size_t kStateSize = 13;
+  void StateTo(int agent, std::span<double, kStateSize> to) const;
+  /// The figures of this tick, in the order of kFigures; NaN: there is none.
+  struct Figure {
+    const char *name, *unit, *description;
+  };
+  static const std::vector<Figure>& FigureTable();
+  std::vector<double> Figures() const;
+
+ private:
+  Json Hello() const;
+  Json State() const;
+  Json Reset(const Json& request);
+  Json Step(const Json& request);
+  Json Take(const Json& event);
+  Json Save(const Json& request);
+  Json Restore(const Json& request);
+  Json Forget(const Json& request);
+  std::map<std::int64_t, Episodes::Snapshot>::const_iterator SnapshotOf(const Json& request) const;
+  void Act(const Port& port, std::span<const double> action);
+  std::vector<Override> Changes() const;
+  void Begin();
+  std::vector<std::vector<double>> ActionsIn(const Json& actions) const;
+
+  const Options options_;
+  std::optional<RecordedSeries> records_;
+  std::optional<std::uint64_t> seed_;  // of the next reset, if it says none
+  std::vector<Override> sets_;
+  std::vector<int> asked_ports_;
+  Episodes episodes_;
+  std::vector<Port> ports_;
+  std::map<std::int64_t, Episodes::Snapshot> snapshots_;
+  std::int64_t next_snapshot_ = 1;
+};
+
+}  // namespace mascot

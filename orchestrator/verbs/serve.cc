@@ -1,0 +1,86 @@
+// `orchestrator serve CONFIG`: a team that waits to be stepped by another program (docs/serve.md).
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "agent/user_code/law_at_work.h"
+#include "orchestrator/live/server/address.h"
+#include "orchestrator/live/server/origin.h"
+#include "orchestrator/serving/server.h"
+#include "orchestrator/serving/team_service.h"
+#include "orchestrator/verbs/config_args.h"
+#include "orchestrator/verbs/verb.h"
+#include "system/console.h"
+#include "system/interruptions.h"
+#include "system/standard_streams.h"
+#include "system/stop_signal.h"
+
+namespace mascot {
+namespace {
+
+constexpr std::uint16_t kServePort = 8770;
+
+struct ServeArgs {
+  ConfigArgs config;
+  LiveAddress at{.port = kServePort};
+  std::vector<int> ports;
+  std::optional<std::string> out;
+  bool once = false, json = false;
+};
+
+int Serve(ServeArgs& args) {
+  StopSignal stop;
+  Console console(args.json);
+  std::optional<EndsAtOnce> before_serving(stop);
+  const Experiment experiment = args.config.Load();
+  before_serving.reset();
+  const Interruptions interruptions(stop, console, [](int) {});
+  const auto goes_on = [&] { return interruptions.signal() == 0; };
+  TeamService team({.text = args.config.Text(),
+                    .path = args.config.Name(),
+                    .overrides = args.config.Overrides(),
+                    .ports = args.ports,
+                    .out = args.out,
+                    .may_go_on = goes_on});
+  ServeSocket socket(args.at, team);
+  ExplainCrashes();
+  if (args.json)
+    std::cout << R"({"address": ")" << socket.address() << "\"}\n";
+  else
+    console.Line(fmt::format("{}: {} agents wait to be stepped at {} (Ctrl-C ends)", experiment.run.name,
+                             experiment.size(), socket.address()));
+  if (!IsLoopback(args.at.address))
+    console.Line("warning: whoever reaches this address can step the team, and give it events");
+  FlushStandardOutput();
+  socket.Run(goes_on, args.once, std::chrono::seconds(static_cast<int>(experiment.run.start_timeout_s) + 1));
+  return goes_on() ? kExitDone : 128 + interruptions.signal();
+}
+
+}  // namespace
+
+std::function<int()> SetUpServe(CLI::App& command) {
+  auto args = std::make_shared<ServeArgs>();
+  args->config.AddTo(command);
+  command
+      .add_option_function<std::string>(
+          "--at", [args](const std::string& address) { args->at = ReadLiveAddress(address, "--at"); },
+          "where to listen (default: 127.0.0.1:8770; port 0: any free one)")
+      ->type_name("ADDRESS:PORT");
+  command.add_option("--ports", args->ports, "agents that take actions in the place of their laws: 1,2")
+      ->delimiter(',')
+      ->type_name("AGENTS");
+  command.add_option("--out", args->out, "record each episode as a run, in the folders DIR/1, DIR/2, ...")
+      ->type_name("DIR");
+  command.add_flag("--once", args->once, "end when the client that steps the team is gone");
+  command.add_flag("--json", args->json, "print the address as JSON on stdout, and nothing else");
+  command.footer("docs/serve.md has every request, and the bytes of the binary form.");
+  return [args] { return Serve(*args); };
+}
+
+}  // namespace mascot
