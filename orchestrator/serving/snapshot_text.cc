@@ -1,5 +1,6 @@
 #include "orchestrator/serving/snapshot_text.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -7,7 +8,6 @@
 #include "base/base64.h"
 #include "base/number.h"
 #include "experiment/experiment.h"
-#include "experiment/toml/section.h"
 #include "orchestrator/formats/compact_json.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
 constexpr std::size_t kMostItems = 1 << 24;
-constexpr std::size_t kLongestKey = 1 << 12, kLongestText = 1 << 24;
+constexpr std::size_t kLongestText = 1 << 24;
 
 std::vector<double> NumbersFrom(const std::string& base64) {
   const auto bytes = FromBase64(base64);
@@ -48,51 +48,57 @@ std::vector<Episodes::Snapshot::Given> GivenFrom(const Json& list, std::int64_t 
   return all;
 }
 
-}  // namespace
-
-std::string TextOf(const Episodes::Snapshot& snapshot) {
-  Json changes = Json::array(), given = Json::array(), events = Json::array();
-  for (const Override& change : snapshot.changes)
-    changes.push_back({{"key", change.key}, {"value", change.value}, {"origin", change.origin}});
-  for (const auto& one : snapshot.given)
-    given.push_back({{"tick", one.tick}, {"agent", one.agent}, {"numbers", one.numbers}});
-  for (const auto& one : snapshot.events) events.push_back({{"tick", one.tick}, {"toml", one.toml}});
-  const std::string_view numbers(reinterpret_cast<const char*>(snapshot.actions.data()),
-                                 snapshot.actions.size() * sizeof(double));
-  return CompactJson({{"of", std::to_string(snapshot.of)},
-                      {"tick", snapshot.tick},
-                      {"changes", std::move(changes)},
-                      {"given", std::move(given)},
-                      {"actions", ToBase64(numbers)},
-                      {"events", std::move(events)}});
+/// The ports of a text, each once.
+std::vector<int> PortsFrom(const Json& list) {
+  std::vector<int> ports;
+  for (const Json& id : list) {
+    if (!id.is_number_integer() || id < 1 || id > kMaxAgents) throw JsonError("ports that are no agents");
+    if (std::ranges::find(ports, id.get<int>()) != ports.end()) throw JsonError("a port twice");
+    ports.push_back(id.get<int>());
+  }
+  return ports;
 }
 
-Episodes::Snapshot SnapshotFrom(std::string_view text) try {
-  const Json json = ReadJson<Json>(text, {.bytes = kLongestText, .depth = 4});
+}  // namespace
+
+std::string TextOf(const ServedSnapshot& snapshot) {
+  const Episodes::Snapshot& flown = snapshot.flown;
+  Json given = Json::array(), events = Json::array();
+  for (const auto& one : flown.given)
+    given.push_back({{"tick", one.tick}, {"agent", one.agent}, {"numbers", one.numbers}});
+  for (const auto& one : flown.events) events.push_back({{"tick", one.tick}, {"toml", one.toml}});
+  const std::string_view numbers(reinterpret_cast<const char*>(flown.actions.data()),
+                                 flown.actions.size() * sizeof(double));
+  Json text{{"of", std::to_string(flown.of)}, {"tick", flown.tick},        {"set", snapshot.start.sets},
+            {"ports", snapshot.start.ports},  {"given", std::move(given)}, {"actions", ToBase64(numbers)},
+            {"events", std::move(events)}};
+  if (snapshot.start.seed) text["seed"] = *snapshot.start.seed;
+  return CompactJson(text);
+}
+
+ServedSnapshot SnapshotFrom(std::string_view text) try {
+  const Json json = ReadJson<Json>(text, {.bytes = kLongestText, .depth = 16});
   if (!json.is_object()) throw JsonError("no object");
   OutsideFields fields(json);
-  Episodes::Snapshot snapshot;
+  ServedSnapshot snapshot;
+  if (fields.Has("seed")) snapshot.start.seed = static_cast<std::uint64_t>(fields.Integer("seed", 0, kMost));
+  snapshot.start.ports = PortsFrom(fields.List("ports", kMaxAgents));
+  snapshot.start.sets = json.value("set", Json::object());
+  Episodes::Snapshot& flown = snapshot.flown;
   const std::string of = fields.Text("of", 20);
-  snapshot.tick = fields.Integer("tick", 0, kMost);
-  snapshot.actions = NumbersFrom(fields.Text("actions", kLongestText));
-  for (const Json& item : fields.List("changes", kMostItems)) {
-    OutsideFields change(item);
-    snapshot.changes.push_back({.key = change.Text("key", kLongestKey),
-                                .value = change.Text("value", kLongestText),
-                                .origin = change.Text("origin", kLongestText)});
-    change.Require();
-  }
-  snapshot.given = GivenFrom(fields.List("given", kMostItems), snapshot.tick, snapshot.actions.size());
+  flown.tick = fields.Integer("tick", 0, kMost);
+  flown.actions = NumbersFrom(fields.Text("actions", kLongestText));
+  flown.given = GivenFrom(fields.List("given", kMostItems), flown.tick, flown.actions.size());
   for (const Json& item : fields.List("events", kMostItems)) {
     OutsideFields event(item);
-    const std::int64_t last = snapshot.events.empty() ? 1 : snapshot.events.back().tick;
-    snapshot.events.push_back({event.Integer("tick", last, kMost), event.Text("toml", kLongestText)});
+    const std::int64_t last = flown.events.empty() ? 1 : flown.events.back().tick;
+    flown.events.push_back({event.Integer("tick", last, kMost), event.Text("toml", kLongestText)});
     event.Require();
   }
   fields.Require();
   const auto number = NumberFrom<std::uint64_t>(of);
   if (!number) throw JsonError("no number of the experiment");
-  snapshot.of = *number;
+  flown.of = *number;
   return snapshot;
 } catch (const JsonError& error) {
   throw std::invalid_argument(std::string("expected a snapshot, got other text: ") + error.what());

@@ -8,11 +8,12 @@
 #include <limits>
 #include <stdexcept>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "agent/laws/laws.h"
 #include "base/utf8.h"
+#include "experiment/live_keys.h"
+#include "experiment/read_experiment.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/control/json_toml.h"
 #include "orchestrator/engines/driven_agents.h"
@@ -21,7 +22,6 @@
 #include "orchestrator/live/shown/shown_keys.h"
 #include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/measuring/separation.h"
-#include "orchestrator/serving/snapshot_text.h"
 
 namespace mascot {
 namespace {
@@ -75,12 +75,41 @@ const RequestKind& KindOf(const Json& request) {
   return *kind;
 }
 
+/// Whether a client may set a value: numbers, booleans, lists of them, and one of the names that a key can have. All
+/// else could be code, a file or a command, which only who starts the server may bring in.
+bool MayBeSet(const std::string& key, const Json& value) {
+  if (value.is_array()) return std::ranges::all_of(value, [&](const Json& item) { return MayBeSet(key, item); });
+  if (!value.is_string()) return value.is_number() || value.is_boolean();
+  const auto [table, rest] = SplitKey(key);
+  if (table == "law") {
+    for (const LawEntry& law : Laws()) {
+      const std::vector<Key> rows = KeysOfLaw(LawTable(), std::string(law.name));
+      const Key* const own = FindRow(rows, rest);
+      if (own != nullptr && own->kind != ValueKind::kOneOf) return false;
+      if (own != nullptr) return true;
+    }
+    return false;
+  }
+  const Key* const row = FindRow(ExperimentKeys(), key);
+  return row != nullptr && row->kind == ValueKind::kOneOf;
+}
+
 /// {"law.p_gain": 0.1} as overrides.
 std::vector<Override> SetsIn(const Json& set) {
+  constexpr std::string_view kKeyCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.[]-";
   if (!set.is_object()) throw std::invalid_argument("expected an object of keys and values as \"set\"");
   std::vector<Override> sets;
-  for (const auto& [key, value] : set.items()) {
-    std::string text = ToToml(ValueOf(value));
+  for (const auto& item : set.items()) {
+    const std::string& key = item.key();
+    if (key.empty() || key.find_first_not_of(kKeyCharacters) != std::string::npos)
+      throw std::invalid_argument(
+          fmt::format("set: expected keys such as law.p_gain, got \"{}\"", Shortened(PlainLine(key), 60)));
+    if (!MayBeSet(key, item.value()))
+      throw std::invalid_argument(
+          fmt::format("set {}: expected numbers, true, false, or one of the key's names: texts and tables are given to "
+                      "`orchestrator serve --set`, not by clients",
+                      key));
+    std::string text = ToToml(ValueOf(item.value()));
     std::string origin = fmt::format("set {} = {}", key, Shortened(text, 100));
     sets.push_back({.key = key, .value = std::move(text), .origin = std::move(origin)});
   }
@@ -120,10 +149,10 @@ std::vector<Override> Joined(std::vector<Override> some, std::span<const Overrid
 
 TeamService::TeamService(Options options)
     : options_(std::move(options)),
-      asked_ports_(options_.ports),
+      start_{.ports = options_.ports},
       episodes_(options_.text, options_.path, options_.overrides) {
   if (options_.out) episodes_.SetWitnesses({&records_.emplace(*options_.out)});
-  if (!asked_ports_.empty()) episodes_.Reset(Changes());
+  if (!start_.ports.empty()) episodes_.Reset(Changes(start_));
   Begin();
 }
 
@@ -138,12 +167,13 @@ std::size_t TeamService::action_numbers() const {
   return numbers;
 }
 
-std::vector<Override> TeamService::Changes() const {
+std::vector<Override> TeamService::Changes(const EpisodeStart& start) const {
+  const std::vector<Override> sets = SetsIn(start.sets);
   std::vector<Override> changes;
-  if (!asked_ports_.empty())
-    changes.push_back(DrivenAgents(options_.text, options_.path, Joined(options_.overrides, sets_), asked_ports_));
-  changes.insert(changes.end(), sets_.begin(), sets_.end());
-  if (seed_) changes.push_back({.key = "run.seed", .value = std::to_string(*seed_), .origin = "seed"});
+  if (!start.ports.empty())
+    changes.push_back(DrivenAgents(options_.text, options_.path, Joined(options_.overrides, sets), start.ports));
+  changes.insert(changes.end(), sets.begin(), sets.end());
+  if (start.seed) changes.push_back({.key = "run.seed", .value = std::to_string(*start.seed), .origin = "seed"});
   return changes;
 }
 
@@ -267,21 +297,15 @@ Json TeamService::State() const {
 }
 
 Json TeamService::Reset(const Json& request) {
-  const auto before = std::make_tuple(seed_, sets_, asked_ports_);
-  seed_.reset();
+  EpisodeStart start{.sets = request.value("set", start_.sets), .ports = start_.ports};
+  if (request.contains("ports")) start.ports = PortsIn(request["ports"]);
   if (request.contains("seed")) {
     OutsideFields fields(request);
-    seed_ = static_cast<std::uint64_t>(fields.Integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
+    start.seed = static_cast<std::uint64_t>(fields.Integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
     fields.Require();
   }
-  try {
-    if (request.contains("set")) sets_ = SetsIn(request["set"]);
-    if (request.contains("ports")) asked_ports_ = PortsIn(request["ports"]);
-    episodes_.Reset(Changes());
-  } catch (...) {
-    std::tie(seed_, sets_, asked_ports_) = before;
-    throw;
-  }
+  episodes_.Reset(Changes(start));
+  start_ = std::move(start);
   Begin();
   return State();
 }
@@ -359,23 +383,27 @@ Json TeamService::Take(const Json& event) {
 
 Json TeamService::Save(const Json& request) {
   const std::string form = request.value("form", Json("number")).is_string() ? request.value("form", "number") : "";
-  if (form == "text") return {{"tick", episodes_.tick()}, {"text", TextOf(episodes_.Save())}};
+  if (form == "text") return {{"tick", episodes_.tick()}, {"text", TextOf({start_, episodes_.Save()})}};
   if (form != "number") throw std::invalid_argument("expected \"number\" or \"text\" as \"form\"");
   if (snapshots_.size() == kMostSnapshots)
     throw std::runtime_error(fmt::format("{} snapshots are kept: forget one first", kMostSnapshots));
-  snapshots_[next_snapshot_] = episodes_.Save();
+  snapshots_[next_snapshot_] = {start_, episodes_.Save()};
   return {{"tick", episodes_.tick()}, {"snapshot", next_snapshot_++}};
 }
 
 Json TeamService::Restore(const Json& request) {
-  OutsideFields fields(request);
+  ServedSnapshot snapshot;
   if (request.contains("text")) {
+    OutsideFields fields(request);
     const std::string text = fields.Text("text", std::size_t{1} << 24);
     fields.Require();
-    episodes_.Restore(SnapshotFrom(text), [] {});
+    snapshot = SnapshotFrom(text);
+    snapshot.flown.changes = Changes(snapshot.start);
   } else {
-    episodes_.Restore(SnapshotOf(request)->second, [] {});
+    snapshot = SnapshotOf(request)->second;
   }
+  episodes_.Restore(snapshot.flown, [] {});
+  start_ = std::move(snapshot.start);
   Begin();
   return State();
 }
@@ -385,7 +413,7 @@ Json TeamService::Forget(const Json& request) {
   return Json::object();
 }
 
-std::map<std::int64_t, Episodes::Snapshot>::const_iterator TeamService::SnapshotOf(const Json& request) const {
+std::map<std::int64_t, ServedSnapshot>::const_iterator TeamService::SnapshotOf(const Json& request) const {
   OutsideFields fields(request);
   const std::int64_t number = fields.Integer("snapshot", 1, std::numeric_limits<std::int64_t>::max());
   fields.Require();

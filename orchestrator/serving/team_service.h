@@ -13,6 +13,7 @@
 #include "experiment/experiment.h"
 #include "orchestrator/engines/episodes.h"
 #include "orchestrator/serving/recorded_series.h"
+#include "orchestrator/serving/snapshot_text.h"
 
 namespace mascot {
 
@@ -75,20 +76,18 @@ class TeamService {
   Json Save(const Json& request);
   Json Restore(const Json& request);
   Json Forget(const Json& request);
-  std::map<std::int64_t, Episodes::Snapshot>::const_iterator SnapshotOf(const Json& request) const;
+  std::map<std::int64_t, ServedSnapshot>::const_iterator SnapshotOf(const Json& request) const;
   void Act(const Port& port, std::span<const double> action);
-  std::vector<Override> Changes() const;
+  std::vector<Override> Changes(const EpisodeStart& start) const;
   void Begin();
   std::vector<std::vector<double>> ActionsIn(const Json& actions) const;
 
   const Options options_;
   std::optional<RecordedSeries> records_;
-  std::optional<std::uint64_t> seed_;  // of the next reset, if it says none
-  std::vector<Override> sets_;
-  std::vector<int> asked_ports_;
+  EpisodeStart start_;  // of this episode
   Episodes episodes_;
   std::vector<Port> ports_;
-  std::map<std::int64_t, Episodes::Snapshot> snapshots_;
+  std::map<std::int64_t, ServedSnapshot> snapshots_;
   std::int64_t next_snapshot_ = 1;
 };
 

@@ -15,6 +15,8 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 ORCHESTRATOR = pathlib.Path(os.environ["MASCOT_BINARY_DIR"]) / "orchestrator"
 LIMIT_S = 60
+NO_CODE = ("set {}: expected numbers, true, false, or one of the key's names: texts and tables are given to "
+           "`orchestrator serve --set`, not by clients")
 TEAM = """[run]
 name = "team"
 duration_s = 0.5
@@ -251,6 +253,23 @@ class Steps(Served):
             self.assertEqual(client.ask("restore", text=text)["error"],
                              "expected a snapshot of the same file, with the same keys set, got one of another")
 
+    def test_names_of_keys_may_be_set(self):
+        with self.client(self.team) as client:
+            self.assertNotIn("error", client.ask("reset", set={"law.axes": "xyz", "graph.topology": "ring"}))
+            self.assertNotEqual(client.ask("step", ticks=20)["v"][0][0], 0)
+
+    def test_texts_of_snapshots_bring_in_no_code(self):
+        with self.client(self.team) as client:
+            text = json.loads(client.ask("snapshot", form="text")["text"])
+            text["set"] = {"law.python": "import os"}
+            self.assertEqual(client.ask("restore", text=json.dumps(text))["error"], NO_CODE.format("law.python"))
+            text["set"], text["ports"] = {}, [1, 1]
+            self.assertEqual(client.ask("restore", text=json.dumps(text))["error"],
+                             "expected a snapshot, got other text: a port twice")
+            text["ports"] = [0]
+            self.assertEqual(client.ask("restore", text=json.dumps(text))["error"],
+                             "expected a snapshot, got other text: ports that are no agents")
+
     def test_so_many_snapshots_are_kept(self):
         with self.client(self.team) as client:
             self.assertEqual([client.ask("snapshot")["snapshot"] for _ in range(256)], list(range(1, 257)))
@@ -272,7 +291,15 @@ class Mistakes(Served):
             (("reset", {"set": {"law.p_gian": 1}}),
              'set law.p_gian = 1: law.p_gian: unknown key (did you mean "p_gain"?)'),
             (("reset", {"set": 1}), 'expected an object of keys and values as "set"'),
-            (("reset", {"set": {"law.p_gain": None}}), "expected a value, got null"),
+            (("reset", {"set": {"law.p_gain": None}}), NO_CODE.format("law.p_gain")),
+            (("reset", {"set": {"law.python": "import os"}}), NO_CODE.format("law.python")),
+            (("reset", {"set": {"law": {"name": "custom"}}}), NO_CODE.format("law")),
+            (("reset", {"set": {"hosts": [{"launch": ["sh"]}]}}), NO_CODE.format("hosts")),
+            (("reset", {"set": {"law.params": {"file": "x"}}}), NO_CODE.format("law.params")),
+            (("reset", {"set": {"agents.starts_file": "/etc/passwd"}}), NO_CODE.format("agents.starts_file")),
+            (("reset", {"set": {"run.seed = 1\nlaw.p_gain": 1}}),
+             'set: expected keys such as law.p_gain, got "run.seed = 1\\nlaw.p_gain"'),
+            (("event", {"event": {"set": {"law.p_gain": None}}}), "expected a value, got null"),
             (("reset", {"seed": -1}), 'expected an integer in [0, 9223372036854775807] as "seed", got -1'),
             (("reset", {"ports": [1, 1]}), 'expected a list of different agents as "ports"'),
             (("set", {"set": {"law.p_gain": -1}}), None),
