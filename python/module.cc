@@ -23,6 +23,7 @@
 #include "agent/laws/laws.h"
 #include "agent/network/network.h"
 #include "base/same_floating_point.h"
+#include "base/state_numbers.h"
 #include "experiment/toml/input.h"
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/live/server/address.h"
@@ -243,7 +244,7 @@ py::array_t<double> ObservationsOf(const TeamEnv& team) {
 }
 
 py::array_t<double> StateOf(const TeamEnv& team) {
-  py::array_t<double> state({py::ssize_t{team.experiment().size()}, Count(TeamEnv::kStateSize)});
+  py::array_t<double> state({py::ssize_t{team.experiment().size()}, Count(kStateNumbers)});
   team.StateTo({state.mutable_data(), static_cast<std::size_t>(state.size())});
   return state;
 }
@@ -395,7 +396,7 @@ py::tuple OutcomeOf(const TeamVector& vector, py::array observations) {
 /// The true states of the teams of all environments at the tick that the last step has reached.
 py::array_t<double> ReachedStates(const TeamVector& vector) {
   py::array_t<double> states(
-      {Count(vector.size()), py::ssize_t{vector.first().experiment().size()}, Count(TeamEnv::kStateSize)});
+      {Count(vector.size()), py::ssize_t{vector.first().experiment().size()}, Count(kStateNumbers)});
   double* to = states.mutable_data();
   for (std::size_t env = 0; env < vector.size(); ++env) to = std::ranges::copy(vector.reached(env).state, to).out;
   return states;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "agent/laws/laws.h"
+#include "base/state_numbers.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/engines/driven_agents.h"
 #include "orchestrator/measuring/agreement_meter.h"
@@ -160,15 +161,9 @@ void TeamEnv::Look() {
 }
 
 void TeamEnv::StateTo(std::span<double> to) const {
-  auto next = to.begin();
   for (const Motion& motion : episodes_.row().motions) {
-    const auto put = [&](const auto& numbers, double sign) {
-      for (Eigen::Index n = 0; n < numbers.size(); ++n) *next++ = sign * numbers[n];
-    };
-    put(motion.p_WB, 1);
-    put(motion.v_WB, 1);
-    put(motion.q_WB.coeffs(), motion.q_WB.w() < 0 ? -1 : 1);  // x, y, z, w
-    put(motion.w_WB_B, 1);
+    mascot::StateTo(motion, to.first<kStateNumbers>());
+    to = to.subspan(kStateNumbers);
   }
 }
 

@@ -62,9 +62,7 @@ class TeamEnv {
   /// What the agents observe at this tick: agents() rows of layout().size(). The row of an agent that is lost is the
   /// last before that.
   std::span<const double> observations() const { return observations_; }
-  /// Writes the true state of each agent of the team, kStateSize numbers, by id - 1: p (3, m), v (3, m/s), attitude (4:
-  /// x, y, z, w with w >= 0), angular velocity in B (3, rad/s).
-  static constexpr std::size_t kStateSize = 13;
+  /// Writes the true state of each agent of the team, kStateNumbers each (base/state_numbers.h), by id - 1.
   void StateTo(std::span<double> to) const;
   /// How far the team is from agreement (m), as the runs' figures have it (DisagreementOf).
   double disagreement_m() const;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/same_floating_point.h"
+#include "base/state_numbers.h"
 
 namespace mascot {
 
@@ -85,7 +86,7 @@ void TeamVector::StepOne(std::size_t env, std::span<const double> actions) {
     reached.truncated = team.is_at_end();
   }
   if (keeps_states_) {
-    reached.state.resize(team.experiment().agents.size() * TeamEnv::kStateSize);
+    reached.state.resize(team.experiment().agents.size() * kStateNumbers);
     team.StateTo(reached.state);
   }
   reached.disagreement_m = team.disagreement_m();

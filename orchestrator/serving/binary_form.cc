@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "base/state_numbers.h"
 #include "orchestrator/formats/bytes.h"
 
 namespace mascot {
@@ -47,8 +48,8 @@ std::string StateFrame(const TeamService& team) {
   Append(content, static_cast<std::uint32_t>(figures.size()));
   Append(content, AsBytes(std::span<const double>(figures)));
   for (int id = 1; id <= agents; ++id) {
-    std::array<double, TeamService::kStateSize> state{};
-    team.StateTo(id, state);
+    std::array<double, kStateNumbers> state{};
+    StateTo(episodes.row().motions[static_cast<std::size_t>(id - 1)], state);
     Append(content, AsBytes(std::span<const double>(state)));
     const Agent& agent = episodes.agent(id);
     Append(content, std::uint32_t{agent.is_lost() ? 1u : 0u});

@@ -29,7 +29,7 @@ BinaryStep ReadStep(std::span<const std::uint8_t> content, std::size_t action_nu
 enum StateFlag : std::uint32_t { kIsOver = 1u << 0, kHasFailed = 1u << 1 };
 
 /// A frame with the state of the team: i64 tick, u32 flags, u32 N agents, u32 F figures, F f64, and for each agent
-/// TeamService::kStateSize f64, u32 whether it is lost, u32 count of the agents that it has heard, u32 for each of
+/// kStateNumbers f64, u32 whether it is lost, u32 count of the agents that it has heard, u32 for each of
 /// them.
 std::string StateFrame(const TeamService& team);
 /// A frame with an answer in JSON.

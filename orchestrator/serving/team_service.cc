@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "agent/laws/laws.h"
+#include "base/state_numbers.h"
 #include "base/utf8.h"
 #include "experiment/live_keys.h"
 #include "experiment/read_experiment.h"
@@ -139,7 +140,7 @@ std::vector<double> ActionIn(const Json& list, const TeamService::Port& port) {
 
 Json ListOf(std::span<const double> numbers) { return std::vector<double>(numbers.begin(), numbers.end()); }
 
-/// The overrides of the user, without those of the request: all must fit together.
+/// `some`, and then `others`.
 std::vector<Override> Joined(std::vector<Override> some, std::span<const Override> others) {
   some.insert(some.end(), others.begin(), others.end());
   return some;
@@ -236,14 +237,6 @@ Json TeamService::Hello() const {
           {"keys", std::move(keys)}};
 }
 
-void TeamService::StateTo(int agent, std::span<double, kStateSize> to) const {
-  const Motion& motion = episodes_.row().motions[static_cast<std::size_t>(agent - 1)];
-  Eigen::Map<Eigen::Vector3d>(to.data() + 0) = motion.p_WB;
-  Eigen::Map<Eigen::Vector3d>(to.data() + 3) = motion.v_WB;
-  Eigen::Map<Eigen::Vector4d>(to.data() + 6) = (motion.q_WB.w() < 0 ? -1 : 1) * motion.q_WB.coeffs();  // x, y, z, w
-  Eigen::Map<Eigen::Vector3d>(to.data() + 10) = motion.w_WB_B;
-}
-
 const std::vector<TeamService::Figure>& TeamService::FigureTable() {
   static const std::vector<Figure> table = {
       {"disagreement_m", "m", "largest distance of an agent from what the team agrees on, along law.axes"},
@@ -266,8 +259,8 @@ Json TeamService::State() const {
   Json p = Json::array(), v = Json::array(), attitude = Json::array(), w = Json::array(), heard = Json::array(),
        lost = Json::array(), figures = Json::object();
   for (int id = 1; id <= experiment.size(); ++id) {
-    std::array<double, kStateSize> numbers{};
-    StateTo(id, numbers);
+    std::array<double, kStateNumbers> numbers{};
+    StateTo(episodes_.row().motions[static_cast<std::size_t>(id - 1)], numbers);
     const std::span<const double> all(numbers);
     p.push_back(ListOf(all.subspan(0, 3)));
     v.push_back(ListOf(all.subspan(3, 3)));

@@ -53,14 +53,10 @@ class TeamService {
   /// Throws as Answer() does.
   void Step(std::int64_t ticks, std::span<const double> actions);
 
-  /// Largest number of ticks of one step, and of snapshots that are kept.
+  /// The largest number of ticks of one step, and of snapshots that are kept.
   static constexpr std::int64_t kMostTicks = 1'000'000;
   static constexpr std::size_t kMostSnapshots = 256;
-  /// Numbers of a state, by agent: p (3, m), v (3, m/s), attitude (4: x, y, z, w with w >= 0 of the unit quaternion
-  /// that takes B to W), angular velocity in B (3, rad/s).
-  static constexpr std::size_t kStateSize = 13;
-  void StateTo(int agent, std::span<double, kStateSize> to) const;
-  /// The figures of this tick, in the order of kFigures; NaN: there is none.
+  /// The figures of this tick, in the order of FigureTable(); NaN: there is none.
   struct Figure {
     const char *name, *unit, *description;
   };

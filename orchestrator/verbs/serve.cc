@@ -38,17 +38,18 @@ int Serve(ServeArgs& args) {
   StopSignal stop;
   Console console(args.json);
   std::optional<EndsAtOnce> before_serving(stop);
-  const Experiment experiment = args.config.Load();
-  before_serving.reset();
-  const Interruptions interruptions(stop, console, [](int) {});
-  const auto goes_on = [&] { return interruptions.signal() == 0; };
+  std::optional<Interruptions> interruptions;  // once it serves
+  const auto goes_on = [&] { return !interruptions || interruptions->signal() == 0; };
   TeamService team({.text = args.config.Text(),
                     .path = args.config.Name(),
                     .overrides = args.config.Overrides(),
                     .ports = args.ports,
                     .out = args.out,
                     .may_go_on = goes_on});
+  before_serving.reset();
+  interruptions.emplace(stop, console, [](int) {});
   ServeSocket socket(args.at, team);
+  const Experiment& experiment = team.episodes().experiment();  // a client's reset may end its life
   ExplainCrashes();
   if (args.json)
     std::cout << R"({"address": ")" << socket.address() << "\"}\n";
@@ -58,8 +59,9 @@ int Serve(ServeArgs& args) {
   if (!IsLoopback(args.at.address))
     console.Line("warning: whoever reaches this address can step the team, and give it events");
   FlushStandardOutput();
-  socket.Run(goes_on, args.once, std::chrono::seconds(static_cast<int>(experiment.run.start_timeout_s) + 1));
-  return goes_on() ? kExitDone : 128 + interruptions.signal();
+  const std::chrono::seconds patience(static_cast<int>(experiment.run.start_timeout_s) + 1);
+  socket.Run(goes_on, args.once, patience);
+  return goes_on() ? kExitDone : 128 + interruptions->signal();
 }
 
 }  // namespace
