@@ -72,7 +72,8 @@ Override DrivenAgents(const std::string& text, const std::string& path, std::spa
   const Experiment experiment = LoadExperiment(text, path, overrides, UserCode::kNeverRuns);
   for (const int id : ids)
     if (id < 1 || id > experiment.size())
-      throw ConfigError({fmt::format("ports: expected agents of the team, from 1 to {}, got {}", experiment.size(), id)});
+      throw ConfigError(
+          {fmt::format("ports: expected agents of the team, from 1 to {}, got {}", experiment.size(), id)});
   Section file = Section::FromText(text, path, overrides);
   const Value::Table team = file.Child("law").InTheFile();
   Value::List tables;
