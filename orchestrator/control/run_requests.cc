@@ -33,10 +33,10 @@ std::string Refusal(const ConfigError& error) {
 
 }  // namespace
 
-RunRequests::RunRequests(const Experiment& experiment, double pace)
+RunRequests::RunRequests(const Experiment& experiment, double pace, bool paused)
     : experiment_(experiment),
       ahead_(Ahead{.live = LiveExperiment(experiment, &LawTable(), /*checked=*/true)}),
-      status_{.pace = experiment.run.mode == Mode::kRealtime ? experiment.run.speed : pace},
+      status_{.paused = paused, .pace = experiment.run.mode == Mode::kRealtime ? experiment.run.speed : pace},
       live_(ahead_->live) {}
 
 void RunRequests::CheckPace(double pace) {

@@ -32,8 +32,9 @@ class RunRequests final : public RunControl, public RowSink {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// `pace`: simulated seconds a second to begin with. `experiment` must outlive this object.
-  RunRequests(const Experiment& experiment, double pace);
+  /// How the run begins: with this pace (simulated seconds a second), and in a pause after tick 0 or not. `experiment`
+  /// must outlive this object.
+  RunRequests(const Experiment& experiment, double pace, bool paused = false);
   /// Throws std::invalid_argument for a pace outside of the range of run.pace.
   static void CheckPace(double pace);
 

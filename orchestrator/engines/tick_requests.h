@@ -18,7 +18,9 @@ class TickRequests {
   /// `requests` must outlive this object, at whose end nothing more can be asked. `take` gives the run an event, which
   /// takes effect at its next tick; it throws ConfigError or std::invalid_argument if the event is not legal any more.
   TickRequests(const Experiment& experiment, RunRequests& requests, std::function<void(const Event& event)> take)
-      : requests_(requests), take_(std::move(take)), gate_(experiment.period_s(), requests.status().pace) {}
+      : requests_(requests), take_(std::move(take)), gate_(experiment.period_s(), requests.status().pace) {
+    if (requests.status().paused) gate_.Pause();
+  }
   ~TickRequests() { requests_.Close(); }
   TickRequests(const TickRequests&) = delete;
   TickRequests& operator=(const TickRequests&) = delete;

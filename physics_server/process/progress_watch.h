@@ -16,6 +16,8 @@ class ProgressWatch {
   /// True if `progress` has been the same for longer than the limit and `grace`. `progress` is a number that changes
   /// whenever something moves; the time counts from the first call with its current value.
   bool IsOverdue(std::int64_t progress, Time now, Seconds grace = Seconds::zero());
+  /// Nobody is waited for now: the time counts from the next call of IsOverdue().
+  void Rest() { seen_.reset(); }
 
  private:
   const Seconds limit_;

@@ -116,7 +116,10 @@ void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string&
   const std::lock_guard lock(mutex_);
   if (from == kOrchestrator) {
     join_list_.OnRecorder(ready);
-    if (life == Life::kReady && ticks_.published() < 0) ticks_.gate().SetPace(status.pace());
+    if (life == Life::kReady && ticks_.published() < 0) {
+      ticks_.gate().SetPace(status.pace());
+      if (status.paused()) ticks_.gate().Pause();
+    }
     Do(ticks_.OnRecorded(static_cast<std::int64_t>(status.tick())));
   } else if (const auto agents = AgentsOf(from)) {
     join_list_.OnAgents(*agents, ready);

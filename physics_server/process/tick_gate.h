@@ -26,6 +26,8 @@ class TickGate {
   void Step(std::int64_t ticks);
 
   bool paused() const { return paused_; }
+  /// Whether it is paused, and no step is left.
+  bool IsAtRest() const { return paused_ && steps_ == 0; }
   double pace() const { return pace_; }
   /// Whether ticks may happen at any time.
   bool IsOpen() const { return !paused_ && pace_ == 0; }

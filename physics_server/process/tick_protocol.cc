@@ -97,11 +97,20 @@ TickProtocol::Turn TickProtocol::Look(Time now, bool stop_requested) {
   }
   if (paced_) return LookAtClock(now, stop_requested);
   if (AwaitsPublication()) return AwaitsRecorder() ? Watch(now) : LookAtGate(now, stop_requested);
+  if (!barrier_.IsComplete() && Rests(stop_requested)) {
+    watch_.Rest();
+    asked_ = -1;
+    return {.next_deadline = now + kLookWhileHeldEvery, .held = true};
+  }
   if (!barrier_.IsComplete()) return Watch(now);
   // The agents that had not answered are lost, so that the tick ends here and not in OnCommand().
   Turn turn{.actions = EndOfAnswers(stop_requested)};
   if (!finished_) turn.next_deadline = now;
   return turn;
+}
+
+bool TickProtocol::Rests(bool stop_requested) const {
+  return !rules_.realtime && gate_.IsAtRest() && !stop_requested && published_ < rules_.last_tick;
 }
 
 TickProtocol::Turn TickProtocol::LookAtGate(Time now, bool stop_requested) {

@@ -16,7 +16,8 @@ namespace mascot {
 /// steps, and when waiting has taken too long. In lockstep a tick ends with the last agent's command. In real time it
 /// ends when the next one is due, and a late agent's last command is held; only the first and the last tick wait for
 /// every command. In both modes, a TickGate says when a tick may happen: in lockstep the tick is published no earlier;
-/// in real time the tick before ends then.
+/// in real time the tick before ends then. In a pause of lockstep nobody is late: who answers then is waited for once
+/// the pause is over, or a step is asked for.
 ///
 /// No world, DDS, clock or lock: the caller passes in what arrives, and the time when it looks. The caller must carry
 /// out the returned actions of each call at once, before the next call.
@@ -108,6 +109,8 @@ class TickProtocol {
   Turn Watch(Time now);
   /// Whether it is time to ask again for the answers to the newest tick: in lockstep, which waits for them.
   bool AsksAgain(Time now);
+  /// Whether it does not matter yet who has answered the newest tick: no other is asked for, in lockstep.
+  bool Rests(bool stop_requested) const;
   /// Look() in lockstep at a tick whose states wait for nothing but the gate.
   Turn LookAtGate(Time now, bool stop_requested);
   /// Look() in real time between the first and the last tick.

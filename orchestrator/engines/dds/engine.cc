@@ -764,7 +764,7 @@ RunPhases::View DdsRun::Look() const {
 }
 
 void DdsRun::Do(const RunPhases::Actions& actions) {
-  if (actions.say_ready) links_->SayReady(Pace());
+  if (actions.say_ready) links_->SayReady(Pace(), run_requests_ != nullptr && run_requests_->status().paused);
   if (actions.ask_to_stop && links_)  // else nobody can be asked yet: processes are being started
     links_->Ask(Ask::kStop, phases_.signal() != 0 ? strsignal(phases_.signal()) : "asked to stop");
   if (actions.ask_to_end) AskToEnd();

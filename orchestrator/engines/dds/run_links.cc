@@ -161,7 +161,7 @@ void RunLinks::PublishExperiment() {
   Note(fmt::format("experiment '{}' handed out", message_.name()));
 }
 
-void RunLinks::SayReady(double pace) {
+void RunLinks::SayReady(double pace, bool paused) {
   {
     const std::lock_guard lock(mutex_);
     if (!process_table_.IsTimeForHello(Now())) return;
@@ -170,6 +170,7 @@ void RunLinks::SayReady(double pace) {
   status.process("recorder");
   status.state(static_cast<std::uint8_t>(Life::kReady));
   status.pace(pace);
+  status.paused(paused);
   recorder_.Write(status);
 }
 

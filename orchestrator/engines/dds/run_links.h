@@ -36,8 +36,8 @@ class RunLinks {
   /// Publishes the experiment, for processes that start at `from_tick`, with all events before that tick.
   void HandOutExperiment(std::int64_t from_tick, std::vector<mascot_msgs::msg::Event> events);
   /// Publishes that the recorder is ready, at most five times a second. Cheap to call often. `pace` is the pace at the
-  /// start, in simulated seconds per second; 0: as fast as the machine can.
-  void SayReady(double pace);
+  /// start, in simulated seconds per second; 0: as fast as the machine can. `paused`: the run pauses after tick 0.
+  void SayReady(double pace, bool paused);
   /// Publishes that rows 0 .. rows - 1 are recorded.
   void Confirm(std::int64_t rows);
   /// Publishes a request to all processes.

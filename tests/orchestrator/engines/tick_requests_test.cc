@@ -68,6 +68,19 @@ TEST_F(AtTicks, AStopIsNotWhatEndsTheWait) {
   EXPECT_EQ(next, Next::kStop);
 }
 
+TEST_F(AtTicks, ARunThatBeginsInAPauseWaitsForAStep) {
+  RunRequests paused(experiment, 0, /*paused=*/true);
+  TickRequests asked(experiment, paused, [](const Event&) {});
+  int looks = 0;
+  EXPECT_EQ(asked.Await(1, {}, [&] { return ++looks < 3; }), Next::kLeave);
+  EXPECT_TRUE(paused.status().paused);
+  const Answer granted = AskMeanwhile(paused, {.kind = Request::Kind::kStep, .number = 1}, [&] {
+    if (next != Next::kTick) next = asked.Await(1, {}, [] { return true; });
+  });
+  EXPECT_TRUE(granted.granted) << granted.words;
+  EXPECT_EQ(next, Next::kTick);
+}
+
 TEST_F(AtTicks, WhoDoesNotWantToWaitLeaves) {
   TickRequests asked(experiment, requests, [](const Event&) {});
   EXPECT_EQ(asked.Await(1, 1e-3, [] { return false; }), Next::kLeave);

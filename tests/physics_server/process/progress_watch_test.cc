@@ -33,6 +33,14 @@ TEST(ProgressWatch, StartsAgainWithEveryChange) {
   EXPECT_FALSE(watch.IsOverdue(0, kT0 + 15s));
 }
 
+TEST(ProgressWatch, ARestDoesNotCount) {
+  ProgressWatch watch(5s);
+  watch.IsOverdue(0, kT0);
+  watch.Rest();
+  EXPECT_FALSE(watch.IsOverdue(0, kT0 + 1h));
+  EXPECT_TRUE(watch.IsOverdue(0, kT0 + 1h + 6s));
+}
+
 TEST(ProgressWatch, AddsTheGraceOfTheLookToTheLimit) {
   ProgressWatch watch(5s);
   watch.IsOverdue(7, kT0);

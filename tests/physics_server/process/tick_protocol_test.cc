@@ -484,6 +484,39 @@ TEST(TickProtocol, APausedRunOutlivesTheTimeOutOfAgents) {
             "tick 1: no command from agents 1-2 within run.agent_timeout_s = 5.0 s");
 }
 
+TEST(TickProtocol, AgentsThatAnswerInAPauseHaveTheirTimeFromTheStepOn) {
+  Exchange exchange = Lockstep(2);
+  exchange.gate().Pause();
+  EXPECT_EQ(exchange.Look(kT0).failure, "");
+  const Turn paused = exchange.Look(kT0 + 1h);
+  EXPECT_EQ(paused.failure, "");
+  EXPECT_EQ(paused.actions, kNothing) << "nobody is asked again";
+  EXPECT_TRUE(paused.held);
+  exchange.gate().Step(1);
+  EXPECT_EQ(exchange.Look(kT0 + 2h).failure, "");
+  EXPECT_EQ(exchange.Look(kT0 + 2h + 5s).failure, "");
+  EXPECT_EQ(exchange.Look(kT0 + 2h + 6s).failure,
+            "tick 0: no command from agents 1-2 within run.agent_timeout_s = 5.0 s");
+}
+
+TEST(TickProtocol, AStopInAPauseWaitsForAnswersAsEver) {
+  Exchange exchange = Lockstep(2);
+  exchange.gate().Pause();
+  exchange.OnCommand(1, 0);
+  EXPECT_EQ(exchange.Look(kT0, kStop).failure, "");
+  EXPECT_EQ(exchange.Look(kT0 + 6s, kStop).failure,
+            "tick 0: no command from agent 2 within run.agent_timeout_s = 5.0 s");
+}
+
+TEST(TickProtocol, TheLastTickIsAnsweredInAPauseToo) {
+  Exchange exchange = Lockstep(2, /*last_tick=*/1);
+  exchange.gate().Step(1);
+  EXPECT_EQ(exchange.OnAllCommands(), (Actions{.take = true, .step = true, .wake = true}));
+  EXPECT_EQ(exchange.Look(kT0).actions, kPublish);
+  exchange.Look(kT0 + 1s);
+  EXPECT_EQ(exchange.Look(kT0 + 7s).failure, "tick 1: no command from agents 1-2 within run.agent_timeout_s = 5.0 s");
+}
+
 TEST(TickProtocol, StepsPublishAsManyTicksAndPauseAgain) {
   Exchange exchange = Lockstep(2);
   exchange.gate().Step(2);
