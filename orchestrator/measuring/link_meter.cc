@@ -21,65 +21,56 @@ bool IsPlain(const Experiment& experiment) {
 }  // namespace
 
 LinkMeter::LinkMeter(const Experiment& experiment)
-    : experiment_(experiment),
-      plain_(IsPlain(experiment)),
-      said_(experiment.agents.size()),
-      sent_numbers_(experiment.agents.size()),
-      exchange_(experiment) {
-  if (!plain_) CountSamples();
+    : experiment_(experiment), said_(experiment.agents.size()), sent_numbers_(experiment.agents.size()) {
+  if (!IsPlain(experiment)) CountSamples();
 }
 
 /// From now on each sample is followed, because some may not arrive.
 void LinkMeter::CountSamples() {
-  plain_ = false;
-  for (const AgentConfig& agent : experiment_.agents) {
-    neighbours_.emplace_back(experiment_, agent.id);
-    exchange_.Send(agent.id,
-                   std::vector<double>(said_[static_cast<std::size_t>(agent.id - 1)]));  // only their number counts
-  }
-  exchange_.EndTick();
+  std::vector<std::vector<double>> messages;  // of which only the size counts
+  for (const std::uint64_t numbers : said_) messages.emplace_back(numbers);
+  hearing_.emplace(experiment_);
+  hearing_->Send(messages);
 }
 
 void LinkMeter::Adopt(const std::shared_ptr<const Experiment>& now) {
-  if (plain_ && !IsPlain(*now)) CountSamples();
-  for (Neighbours& neighbours : neighbours_) neighbours.Adopt(*now);
-  now_ = now;
+  if (plain() && !IsPlain(*now)) CountSamples();
+  if (hearing_) hearing_->Adopt(now);
 }
 
 void LinkMeter::Add(std::int64_t tick, const DecodedRow& row) {
-  if (plain_) ++plain_rows_;
-  for (const AgentConfig& agent : experiment_.agents) {
-    const auto i = static_cast<std::size_t>(agent.id - 1);
-    if (plain_) {  // the message sent at tick k - 1 travels with the state of tick k
-      sent_numbers_[i] += said_[i];
-      said_[i] = row.messages[i].size();
-    } else {
-      neighbours_[i].Hear(tick, row.motions[i], exchange_.SamplesFor(agent.id, row.motions, samples_));
-    }
+  if (hearing_) {
+    hearing_->Hear(tick, row.motions);
+    hearing_->Send(row.messages);
+    return;
   }
-  if (plain_) return;
-  for (const AgentConfig& agent : experiment_.agents)
-    exchange_.Send(agent.id, row.messages[static_cast<std::size_t>(agent.id - 1)]);
-  exchange_.EndTick();
+  ++plain_rows_;
+  for (std::size_t i = 0; i < said_.size(); ++i) {  // the message sent at tick k - 1 travels with the state of tick k
+    sent_numbers_[i] += said_[i];
+    said_[i] = row.messages[i].size();
+  }
 }
 
 void LinkMeter::EdgesNow(std::vector<EdgeNow>& edges) const {
   edges.clear();
-  if (plain_) edges.resize(experiment_.graph.edges(), plain_rows_ > 0 ? EdgeNow{EdgeNow::State::kHeard, 0} : EdgeNow());
-  for (const Neighbours& neighbours : neighbours_) neighbours.AddEdgesTo(edges);
+  if (plain())
+    edges.resize(experiment_.graph.edges(), plain_rows_ > 0 ? EdgeNow{EdgeNow::State::kHeard, 0} : EdgeNow());
+  if (hearing_)
+    for (const Neighbours& neighbours : hearing_->neighbours()) neighbours.AddEdgesTo(edges);
 }
 
 void LinkMeter::LossesSoFar(std::vector<std::uint64_t>& lost) const {
   lost.clear();
-  for (const Neighbours& neighbours : neighbours_) neighbours.AddLossesTo(lost);
+  if (hearing_)
+    for (const Neighbours& neighbours : hearing_->neighbours()) neighbours.AddLossesTo(lost);
 }
 
 std::vector<EdgeTraffic> LinkMeter::Result() const {
   std::vector<EdgeTraffic> traffic;
   for (int id = 1; id <= experiment_.size(); ++id) {
     const auto& may_hear = experiment_.graph.HeardBy(id);
-    const auto counts =
-        plain_ ? std::vector<EdgeCount>(may_hear.size()) : neighbours_[static_cast<std::size_t>(id - 1)].counts();
+    const auto counts = plain() ? std::vector<EdgeCount>(may_hear.size())
+                                : hearing_->neighbours()[static_cast<std::size_t>(id - 1)].counts();
     for (std::size_t k = 0; k < may_hear.size(); ++k) {
       const auto from = static_cast<std::size_t>(may_hear[k].id - 1);
       EdgeTraffic edge{.hearer = id,

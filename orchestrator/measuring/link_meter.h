@@ -2,10 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "agent/neighbours.h"
-#include "orchestrator/team/exchange.h"
+#include "orchestrator/team/hearing.h"
 #include "orchestrator/team/row.h"
 
 namespace mascot {
@@ -29,7 +30,7 @@ class LinkMeter {
   /// Adds the next tick.
   void Add(std::int64_t tick, const DecodedRow& row);
   /// True as long as every sample of every edge has arrived at once: then EdgesNow() depends on no row.
-  bool plain() const { return plain_; }
+  bool plain() const { return !hearing_; }
   /// One entry per edge, in increasing order of hearer, then of heard.
   std::vector<EdgeTraffic> Result() const;
   /// What became of each edge at the newest tick, in the same order. Replaces `edges`, which keeps its capacity.
@@ -42,13 +43,9 @@ class LinkMeter {
   void CountSamples();
 
   const Experiment& experiment_;
-  std::shared_ptr<const Experiment> now_;  // null before the first event
-  bool plain_;                             // every sample of every edge arrives: rows need only be counted
   std::int64_t plain_rows_ = 0;
-  std::vector<std::uint64_t> said_, sent_numbers_;  // if plain_, by id - 1: numbers in the last message; in all sent
-  std::vector<Neighbours> neighbours_;              // if not plain_, by id - 1
-  Exchange exchange_;
-  std::vector<Sample> samples_;  // scratch
+  std::vector<std::uint64_t> said_, sent_numbers_;  // if plain(), by id - 1: numbers in the last message; in all sent
+  std::optional<Hearing> hearing_;                  // absent as long as plain(): rows need only be counted
 };
 
 }  // namespace mascot
