@@ -15,12 +15,7 @@
 #include <utility>
 
 #include "experiment/toml/section.h"
-#include "orchestrator/formats/bytes.h"
-#include "orchestrator/formats/compact_json.h"
-#include "orchestrator/formats/outside_fields.h"
-#include "orchestrator/formats/outside_json.h"
 #include "orchestrator/serving/binary_form.h"
-#include "system/failure.h"
 
 namespace mascot {
 namespace {
@@ -28,11 +23,9 @@ namespace {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
-using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kLook = std::chrono::milliseconds(100);
-constexpr int kDepth = 16;
 
 std::string TextOf(const tcp::endpoint& endpoint) {
   const std::string address = endpoint.address().to_string();
@@ -44,7 +37,7 @@ std::string TextOf(const tcp::endpoint& endpoint) {
 class ServeSocket::Impl {
  public:
   Impl(const LiveAddress& at, TeamService& team, ServeLimits limits)
-      : team_(team), limits_(limits), acceptor_(io_), timer_(io_) {
+      : team_(team), limits_(limits), acceptor_(io_), timer_(io_), pause_(io_) {
     try {
       tcp::resolver resolver(io_);
       const tcp::endpoint endpoint = *resolver.resolve(at.address, std::to_string(at.port)).begin();
@@ -82,7 +75,7 @@ class ServeSocket::Impl {
   const ServeLimits limits_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_;
-  asio::steady_timer timer_;
+  asio::steady_timer timer_, pause_;  // of Look(); between two attempts to accept a client
   std::size_t clients_ = 0;
   const Client* driver_ = nullptr;  // the client that steps the team
   std::string driver_name_;
@@ -94,7 +87,11 @@ class ServeSocket::Impl {
 class ServeSocket::Impl::Client : public std::enable_shared_from_this<Client> {
  public:
   Client(Impl& server, tcp::socket socket)
-      : server_(server), socket_(std::move(socket)), timer_(server.io_), most_(server.limits_.first_message_bytes) {
+      : server_(server),
+        socket_(std::move(socket)),
+        timer_(server.io_),
+        talk_(
+            server.team_, [this](const std::string& request) { Drive(request); }, server.limits_.messages) {
     error_code ignored;
     const tcp::endpoint peer = socket_.remote_endpoint(ignored);
     if (!ignored) name_ = TextOf(peer);
@@ -111,38 +108,30 @@ class ServeSocket::Impl::Client : public std::enable_shared_from_this<Client> {
   Client& operator=(const Client&) = delete;
 
   void Begin() {
-    if (server_.clients_ > server_.limits_.clients) {
-      ends_ = true;
-      return Send(
-          Framed(ErrorJson({}, fmt::format("{} clients are connected, as many as may be", server_.limits_.clients))));
-    }
+    if (server_.clients_ > server_.limits_.clients)
+      return Send(talk_.Refuse(fmt::format("{} clients are connected, as many as may be", server_.limits_.clients)));
     timer_.expires_after(server_.limits_.hello);
     timer_.async_wait([me = weak_from_this()](error_code error) {
       const auto self = me.lock();
-      if (!error && self && !self->is_known_) self->Close();
+      if (!error && self && !self->talk_.is_known()) self->Close();
     });
     ReadLine();
   }
 
  private:
-  static std::string ErrorJson(const Json& request, const std::string& words) {
-    Json answer{{"error", words}};
-    if (request.is_object() && request.contains("id")) answer["id"] = request["id"];
-    return CompactJson(answer);
-  }
-
   void ReadLine() {
     asio::async_read_until(
-        socket_, asio::dynamic_buffer(in_, most_), '\n',
+        socket_, asio::dynamic_buffer(in_, talk_.most()), '\n',
         [self = shared_from_this()](error_code error, std::size_t length) { self->OnLine(error, length); });
   }
 
   void OnLine(error_code error, std::size_t length) {
-    if (error == asio::error::not_found) return Refuse(fmt::format("expected a line of at most {} bytes", most_));
+    if (error == asio::error::not_found)
+      return Send(talk_.Refuse(fmt::format("expected a line of at most {} bytes", talk_.most())));
     if (error) return;
     const std::string line = in_.substr(0, length - 1);
     in_.erase(0, length);
-    OnJson(line);
+    Send(talk_.OnLine(line));
   }
 
   /// How many bytes are still to be read until there are `bytes`.
@@ -158,8 +147,8 @@ class ServeSocket::Impl::Client : public std::enable_shared_from_this<Client> {
   void OnFrameHead() {
     std::uint32_t length = 0;
     std::memcpy(&length, in_.data(), sizeof length);
-    if (length < 1 || length > most_)
-      return Refuse(fmt::format("expected a frame of 1 to {} bytes, got one of {}", most_, length));
+    if (length < 1 || length > talk_.most())
+      return Send(talk_.Refuse(fmt::format("expected a frame of 1 to {} bytes, got one of {}", talk_.most(), length)));
     asio::async_read(socket_, asio::dynamic_buffer(in_), MissingTo(kFrameLength + length),
                      [self = shared_from_this(), length](error_code error, std::size_t) {
                        if (!error) self->OnFrame(length);
@@ -167,57 +156,9 @@ class ServeSocket::Impl::Client : public std::enable_shared_from_this<Client> {
   }
   void OnFrame(std::size_t length) {
     const std::string content = in_.substr(kFrameHead, length - 1);
-    const auto kind = static_cast<FrameKind>(in_[kFrameLength]);
+    const auto kind = static_cast<std::uint8_t>(in_[kFrameLength]);
     in_.erase(0, kFrameLength + length);
-    if (kind == FrameKind::kJson) return OnJson(content);
-    if (kind != FrameKind::kStep) return Refuse("expected a frame of kind J or S");
-    try {
-      Drive("step");
-      const BinaryStep step = ReadStep(AsBytes(content), server_.team_.action_numbers());
-      server_.team_.Step(step.ticks, step.actions);
-      Send(StateFrame(server_.team_));
-    } catch (const std::exception& failure) {
-      Send(Framed(ErrorJson({}, InWords(failure))));
-    }
-  }
-  void OnJson(const std::string& text) {
-    Json request;
-    try {
-      request = ReadJson<Json>(text, {.bytes = most_, .depth = kDepth});
-      if (!request.is_object()) throw JsonError("expected an object, got another value");
-    } catch (const JsonError& error) {
-      const std::string words = std::string("expected a request in JSON: ") + error.what();
-      return is_known_ ? Send(Framed(ErrorJson({}, words))) : Refuse(words);
-    }
-    const Json kind = request.value("request", Json());
-    if (!is_known_ && kind != "hello") return Refuse("expected {\"request\": \"hello\", \"protocol\": 1} first");
-    std::string answer;
-    bool becomes_binary = false;
-    try {
-      if (kind == "hello") becomes_binary = ReadHello(request);
-      if (kind.is_string() && TeamService::IsChange(kind.get<std::string>())) Drive(kind.get<std::string>());
-      answer = CompactJson(server_.team_.Answer(request));
-      is_known_ = true;
-      most_ = server_.limits_.message_bytes;
-    } catch (const std::exception& failure) {
-      becomes_binary = false;
-      answer = ErrorJson(request, InWords(failure));
-      ends_ = !is_known_;
-    }
-    ends_ = ends_ || kind == "close";
-    Send(Framed(std::move(answer)));
-    is_binary_ = is_binary_ || becomes_binary;  // from the next message on
-  }
-
-  /// Returns whether the client asks for the binary form.
-  static bool ReadHello(const Json& request) {
-    OutsideFields fields(request);
-    fields.Integer("protocol", kServeProtocol, kServeProtocol);
-    const std::string form = request.contains("form") ? fields.Text("form", 10) : "json";
-    fields.Require();
-    if (form != "json" && form != "binary")
-      throw std::invalid_argument(fmt::format("expected \"json\" or \"binary\" as \"form\", got \"{}\"", form));
-    return form == "binary";
+    Send(talk_.OnFrame(kind, content));
   }
 
   /// Makes this client the one that steps the team. Throws std::runtime_error if another one does.
@@ -230,19 +171,11 @@ class ServeSocket::Impl::Client : public std::enable_shared_from_this<Client> {
       throw std::runtime_error(fmt::format("{}: another client steps this team: {}", request, server_.driver_name_));
   }
 
-  std::string Framed(std::string json) const { return is_binary_ ? JsonFrame(json) : std::move(json) + '\n'; }
-
-  /// Answers with an error, and ends the connection.
-  void Refuse(const std::string& words) {
-    ends_ = true;
-    Send(Framed(ErrorJson({}, words)));
-  }
-
   void Send(std::string message) {
     out_ = std::move(message);
     asio::async_write(socket_, asio::buffer(out_), [self = shared_from_this()](error_code error, std::size_t) {
-      if (error || self->ends_) return self->Close();
-      self->is_binary_ ? self->ReadFrame() : self->ReadLine();
+      if (error || self->talk_.is_over()) return self->Close();
+      self->talk_.is_binary() ? self->ReadFrame() : self->ReadLine();
     });
   }
 
@@ -257,18 +190,21 @@ class ServeSocket::Impl::Client : public std::enable_shared_from_this<Client> {
   tcp::socket socket_;
   asio::steady_timer timer_;
   std::string name_ = "a client that is gone";
-  std::size_t most_;       // longest message
-  std::string in_, out_;   // in_: what has come of the next messages
-  bool is_known_ = false;  // has said hello
-  bool is_binary_ = false;
-  bool ends_ = false;  // once the answer is sent
+  Conversation talk_;
+  std::string in_, out_;  // in_: what has come of the next messages
 };
 
 void ServeSocket::Impl::Accept() {
   acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-    if (!error) std::make_shared<Client>(*this, std::move(socket))->Begin();
     if (error == asio::error::operation_aborted) return;
-    Accept();
+    if (!error) {
+      std::make_shared<Client>(*this, std::move(socket))->Begin();
+      return Accept();
+    }
+    pause_.expires_after(kLook);  // there are too many descriptors: the client waits
+    pause_.async_wait([this](error_code over) {
+      if (!over) Accept();
+    });
   });
 }
 

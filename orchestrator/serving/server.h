@@ -7,16 +7,16 @@
 #include <string>
 
 #include "orchestrator/live/server/address.h"
+#include "orchestrator/serving/conversation.h"
 #include "orchestrator/serving/team_service.h"
 
 namespace mascot {
 
 /// Limits of a server of `orchestrator serve`.
 struct ServeLimits {
-  std::size_t clients = 16;                                ///< a further one is told so, and dropped
-  std::size_t first_message_bytes = std::size_t{4} << 10;  ///< longest message before hello
-  std::size_t message_bytes = std::size_t{16} << 20;       ///< longest message after it
-  std::chrono::seconds hello{5};                           ///< time for hello to arrive
+  std::size_t clients = 16;            ///< a further one is told so, and dropped
+  Conversation::Limits messages = {};  ///< how long they may be
+  std::chrono::seconds hello{5};       ///< time for hello to arrive
 };
 
 /// Serves a team by TCP (docs/serve.md). The first message of a client must be hello: a page in a browser, which can
