@@ -35,24 +35,26 @@ bool IsIgnored(int signal) {
   return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-StopSignal::StopSignal() {
+StopSignal::StopSignal(Hears hears) : hears_(hears) {
   const sigset_t set = Signals();
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  if (hears_ == Hears::kSignals) pthread_sigmask(SIG_BLOCK, &set, nullptr);
   Open();
 }
 
 /// Makes the descriptors that are not there, or not any more.
 void StopSignal::Open() {
   const sigset_t set = Signals();
-  if (fcntl(signals_, F_GETFD) < 0) signals_ = Checked(signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK), "signalfd");
+  if (hears_ == Hears::kSignals && fcntl(signals_, F_GETFD) < 0)
+    signals_ = Checked(signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK), "signalfd");
   if (fcntl(wakeups_, F_GETFD) < 0) wakeups_ = Checked(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK), "eventfd");
 }
 
 StopSignal::~StopSignal() {
+  close(wakeups_);
+  if (hears_ == Hears::kThreads) return;
   signalfd_siginfo unread;  // a pending signal would end this process once unblocked
   while (read(signals_, &unread, sizeof unread) == sizeof unread) {
   }
-  close(wakeups_);
   close(signals_);
   const sigset_t set = Signals();
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
@@ -62,6 +64,7 @@ int StopSignal::Within(std::chrono::nanoseconds timeout) {
   constexpr std::chrono::nanoseconds kLongestPause =
       std::chrono::milliseconds(500);  // descriptors may have been closed
   for (auto left = std::max(timeout, std::chrono::nanoseconds::zero());; left -= kLongestPause) {
+    if (const int raised = raised_.exchange(0); raised != 0) return raised;
     pollfd fds[] = {{signals_, POLLIN, 0}, {wakeups_, POLLIN, 0}};
     const timespec limit{0, std::min(left, kLongestPause).count()};
     const int ready = ppoll(fds, 2, &limit, nullptr);
@@ -76,10 +79,15 @@ int StopSignal::Within(std::chrono::nanoseconds timeout) {
       eventfd_t count;
       eventfd_read(wakeups_, &count);
       woken_ = false;
-      return 0;
+      return raised_.exchange(0);
     }
-    if (woken_.exchange(false) || ready < 0 || left <= kLongestPause) return 0;
+    if (woken_.exchange(false) || ready < 0 || left <= kLongestPause) return raised_.exchange(0);
   }
+}
+
+void StopSignal::Raise(int signal) {
+  raised_ = signal;
+  Wake();
 }
 
 void StopSignal::Wake() {

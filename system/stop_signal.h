@@ -15,7 +15,10 @@ bool IsIgnored(int signal);
 /// blocked mask. If a law closes the descriptors of this object, the object opens new ones. Throws std::system_error.
 class StopSignal {
  public:
-  StopSignal();
+  StopSignal() : StopSignal(Hears::kSignals) {}
+  /// What a loop waits for: signals, too, or only what other threads say; then no signal is blocked, or unblocked.
+  enum class Hears { kSignals, kThreads };
+  explicit StopSignal(Hears hears);
   ~StopSignal();  ///< discards pending signals of these kinds and unblocks them
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
@@ -25,10 +28,14 @@ class StopSignal {
   int Within(std::chrono::nanoseconds timeout);
   /// Makes the running Within(), or the next one, return. Thread-safe.
   void Wake();
+  /// Makes it return this signal, as if that had come. Thread-safe.
+  void Raise(int signal);
 
  private:
   void Open();
 
+  const Hears hears_;
+  std::atomic<int> raised_ = 0;    // Raise()
   std::atomic<int> signals_ = -1;  // signalfd
   std::atomic<int> wakeups_ = -1;  // eventfd
   std::atomic<bool> woken_ = false;

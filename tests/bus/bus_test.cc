@@ -674,6 +674,17 @@ TEST(AgentProcess, RefusesWrongArguments) {
   EXPECT_EQ(discovery.output, "error: --discovery: expected IP-ADDRESS:PORT, got 'somewhere'\n");
 }
 
+TEST(StopSignal, OfThreadsAloneLeavesSignalsToOthersAndTellsWhatIsRaised) {
+  StopSignal signals;  // who hears them in this process
+  StopSignal threads(StopSignal::Hears::kThreads);
+  kill(getpid(), SIGTERM);
+  EXPECT_EQ(threads.Within(0ms), 0);
+  EXPECT_EQ(signals.Within(1s), SIGTERM);
+  threads.Raise(SIGINT);
+  EXPECT_EQ(threads.Within(1s), SIGINT);
+  EXPECT_EQ(threads.Within(0ms), 0) << "once";
+}
+
 TEST(StopSignal, ReturnsAfterAWakeUpOrASignal) {
   StopSignal stop;
   stop.Wake();
