@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -23,6 +24,8 @@ class ActionFeed {
   /// Asks the source for the actions of `tick`, once all events up to it are taken; call it for each tick, in order.
   /// Throws what the source throws, and std::invalid_argument for an action that does not fit its law.
   void GoTo(std::int64_t tick);
+  /// The experiment as the events so far have changed it; null: there was none.
+  std::shared_ptr<const Experiment> now() const { return live_ ? live_->now() : nullptr; }
   /// The action of agent `id` at that tick.
   std::span<const double> Of(int id) const { return held_.Of(id); }
 

@@ -58,17 +58,25 @@ const Row::Bytes& SampleOf(const Row& row, const Topic& topic) { return SampleIn
 
 void Decode(const Row& row, DecodedRow& decoded) {
   DecodeEvents(row, decoded);
+  decoded.events_so_far = DecodeStates(row, decoded.motions);
   for (std::size_t i = 0; i < decoded.motions.size(); ++i) {
     const int id = static_cast<int>(i) + 1;
-    const std::uint8_t* const state = BodyOf(row, Topic::State(id), kStateBody);
-    GetState(state, decoded.motions[i]);
-    decoded.events_so_far = static_cast<int>(HeadOf(state).more);
     decoded.messages[i].clear();
     if (!row.messages[i].empty()) GetMessage(BodyOfNumbers(row, Topic::Message(id), kMaxNumbers), decoded.messages[i]);
     DecodeAction(row, id, decoded.actions[i]);
     decoded.has_answered[i] = !row.commands[i].empty();
     if (decoded.has_answered[i] != 0) GetCommand(BodyOf(row, Topic::Command(id), kCommandBody), decoded.commands[i]);
   }
+}
+
+int DecodeStates(const Row& row, std::span<Motion> motions) {
+  std::uint32_t events = 0;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const std::uint8_t* const state = BodyOf(row, Topic::State(static_cast<int>(i) + 1), kStateBody);
+    GetState(state, motions[i]);
+    events = HeadOf(state).more;
+  }
+  return static_cast<int>(events);
 }
 
 void DecodeAction(const Row& row, int id, std::vector<double>& action) {

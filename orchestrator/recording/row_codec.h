@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bus/wire.h"
@@ -16,6 +17,10 @@ const Row::Bytes& SampleOf(const Row& row, const Topic& topic);
 /// Decodes `row` into `decoded`, which holds the previous row: a command that is missing in `row` keeps its value.
 /// Throws std::runtime_error, with tick and topic, for bytes that are not a sample of the expected type.
 void Decode(const Row& row, DecodedRow& decoded);
+
+/// Decodes the states of `row`, by id - 1. Returns how many events have taken effect up to its tick. Throws as Decode()
+/// does.
+int DecodeStates(const Row& row, std::span<Motion> motions);
 
 /// Decodes the action of agent `id` in `row`; empty: there is none. Throws as Decode() does.
 void DecodeAction(const Row& row, int id, std::vector<double>& action);

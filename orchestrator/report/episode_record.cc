@@ -1,6 +1,7 @@
 #include "orchestrator/report/episode_record.h"
 
 #include <filesystem>
+#include <utility>
 
 #include "orchestrator/control/run_requests.h"
 #include "orchestrator/measuring/run_meter.h"
@@ -24,8 +25,8 @@ struct EpisodeRecord::Running {
 };
 
 EpisodeRecord::EpisodeRecord(const std::optional<std::string>& out, const Experiment& experiment, bool force,
-                             const RunFolder::Words& words)
-    : folder_(std::in_place, out, experiment, force, words), path_(folder_->path()) {}
+                             const RunFolder::Words& words, std::string engine)
+    : folder_(std::in_place, out, experiment, force, words), path_(folder_->path()), engine_(std::move(engine)) {}
 
 EpisodeRecord::~EpisodeRecord() = default;
 
@@ -49,7 +50,7 @@ void EpisodeRecord::End(const EngineResult& result) {
                        .prediction = run->prediction,
                        .meter = run->meter,
                        .engine = result,
-                       .engine_name = kInProcess,
+                       .engine_name = engine_,
                        .topics = run->files.topics(),
                        .samples = run->files.samples()};
   run->files.WriteTables(IncidentsOf(run->meter, result, run->requests.numbers_by_hand()));

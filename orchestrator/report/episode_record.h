@@ -16,8 +16,9 @@ namespace mascot {
 class EpisodeRecord final : public EpisodeWitness {
  public:
   /// Creates the folder `out`, as RunFolder does, for an episode of `experiment`, or of one with other values.
+  /// `engine`: the name of the one that flies it.
   EpisodeRecord(const std::optional<std::string>& out, const Experiment& experiment, bool force,
-                const RunFolder::Words& words);
+                const RunFolder::Words& words, std::string engine = kInProcess);
   ~EpisodeRecord() override;
 
   std::vector<RowSink*> Begin(const Experiment& experiment) override;
@@ -31,6 +32,7 @@ class EpisodeRecord final : public EpisodeWitness {
   struct Running;
   std::optional<const RunFolder> folder_;  // absent when it is complete: another run may take it
   const std::filesystem::path path_;
+  const std::string engine_;
   std::chrono::steady_clock::time_point began_;
   std::unique_ptr<Running> running_;  // null: no episode is being recorded
 };

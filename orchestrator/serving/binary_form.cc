@@ -37,24 +37,24 @@ BinaryStep ReadStep(std::span<const std::uint8_t> content, std::size_t action_nu
 }
 
 std::string StateFrame(const TeamService& team) {
-  const Episodes& episodes = team.episodes();
-  const int agents = episodes.experiment().size();
+  const SteppedTeam& stepped = team.team();
+  const int agents = stepped.experiment().size();
   const std::vector<double> figures = team.Figures();
-  const std::uint32_t flags = (episodes.is_over() ? kIsOver : 0u) | (episodes.failure().empty() ? 0u : kHasFailed);
+  const std::uint32_t flags = (stepped.is_over() ? kIsOver : 0u) | (stepped.failure().empty() ? 0u : kHasFailed);
   Bytes content;
-  Append(content, episodes.tick());
+  Append(content, stepped.tick());
   Append(content, flags);
   Append(content, static_cast<std::uint32_t>(agents));
   Append(content, static_cast<std::uint32_t>(figures.size()));
   Append(content, AsBytes(std::span<const double>(figures)));
   for (int id = 1; id <= agents; ++id) {
     std::array<double, kStateNumbers> state{};
-    StateTo(episodes.row().motions[static_cast<std::size_t>(id - 1)], state);
+    StateTo(stepped.row().motions[static_cast<std::size_t>(id - 1)], state);
     Append(content, AsBytes(std::span<const double>(state)));
-    const Agent& agent = episodes.agent(id);
-    Append(content, std::uint32_t{agent.is_lost() ? 1u : 0u});
-    Append(content, static_cast<std::uint32_t>(agent.heard().size()));
-    for (const Heard& heard : agent.heard()) Append(content, static_cast<std::uint32_t>(heard.id));
+    Append(content, std::uint32_t{stepped.IsLost(id) ? 1u : 0u});
+    const std::vector<int> heard = stepped.HeardBy(id);
+    Append(content, static_cast<std::uint32_t>(heard.size()));
+    for (const int other : heard) Append(content, static_cast<std::uint32_t>(other));
   }
   return FrameOf(FrameKind::kStep, {reinterpret_cast<const char*>(content.data()), content.size()});
 }

@@ -4,7 +4,7 @@ namespace mascot {
 
 std::vector<RowSink*> RecordedSeries::Begin(const Experiment& experiment) {
   newest_ = folder_ / std::to_string(++number_);
-  record_ = std::make_unique<EpisodeRecord>(newest_.string(), experiment, /*force=*/false, RunFolder::Words());
+  record_ = std::make_unique<EpisodeRecord>(newest_.string(), experiment, /*force=*/false, RunFolder::Words(), engine_);
   return record_->Begin(experiment);
 }
 

@@ -30,8 +30,8 @@ std::vector<double> NumbersFrom(const std::string& base64) {
 }
 
 /// The actions that were given. Throws JsonError if they are not in the order of ticks, or do not use up `numbers`.
-std::vector<Episodes::Snapshot::Given> GivenFrom(const Json& list, std::int64_t last_tick, std::size_t numbers) {
-  std::vector<Episodes::Snapshot::Given> all;
+std::vector<SteppedTeam::Snapshot::Given> GivenFrom(const Json& list, std::int64_t last_tick, std::size_t numbers) {
+  std::vector<SteppedTeam::Snapshot::Given> all;
   std::int64_t tick = 0;
   std::size_t used = 0;
   for (const Json& item : list) {
@@ -62,7 +62,7 @@ std::vector<int> PortsFrom(const Json& list) {
 }  // namespace
 
 std::string TextOf(const ServedSnapshot& snapshot) {
-  const Episodes::Snapshot& flown = snapshot.flown;
+  const SteppedTeam::Snapshot& flown = snapshot.flown;
   Json given = Json::array(), events = Json::array();
   for (const auto& one : flown.given)
     given.push_back({{"tick", one.tick}, {"agent", one.agent}, {"numbers", one.numbers}});
@@ -84,7 +84,7 @@ ServedSnapshot SnapshotFrom(std::string_view text) try {
   if (fields.Has("seed")) snapshot.start.seed = static_cast<std::uint64_t>(fields.Integer("seed", 0, kMost));
   snapshot.start.ports = PortsFrom(fields.List("ports", kMaxAgents));
   snapshot.start.sets = json.value("set", Json::object());
-  Episodes::Snapshot& flown = snapshot.flown;
+  SteppedTeam::Snapshot& flown = snapshot.flown;
   const std::string of = fields.Text("of", 20);
   flown.tick = fields.Integer("tick", 0, kMost);
   flown.actions = NumbersFrom(fields.Text("actions", kLongestText));

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "orchestrator/engines/episodes.h"
+#include "orchestrator/engines/stepped_team.h"
 
 namespace mascot {
 
@@ -21,7 +21,7 @@ struct EpisodeStart {
 /// An episode so far. Its overrides (Snapshot::changes) are those of `start`.
 struct ServedSnapshot {
   EpisodeStart start;
-  Episodes::Snapshot flown;
+  SteppedTeam::Snapshot flown;
 };
 
 /// A snapshot as text, which a client can keep and bring back, to another server of the same experiment, too.

@@ -17,7 +17,9 @@
 #include "experiment/read_experiment.h"
 #include "experiment/toml/section.h"
 #include "orchestrator/control/json_toml.h"
+#include "orchestrator/engines/dds/episodes_over_dds.h"
 #include "orchestrator/engines/driven_agents.h"
+#include "orchestrator/engines/episodes.h"
 #include "orchestrator/formats/outside_fields.h"
 #include "orchestrator/formats/outside_json.h"
 #include "orchestrator/live/shown/shown_keys.h"
@@ -149,12 +151,21 @@ std::vector<Override> Joined(std::vector<Override> some, std::span<const Overrid
 }  // namespace
 
 TeamService::TeamService(Options options)
-    : options_(std::move(options)),
-      start_{.ports = options_.ports},
-      episodes_(options_.text, options_.path, options_.overrides) {
-  if (options_.out) episodes_.SetWitnesses({&records_.emplace(*options_.out)});
-  if (!start_.ports.empty()) episodes_.Reset(Changes(start_));
+    : options_(std::move(options)), start_{.ports = options_.ports}, team_(MakeTeam()) {
+  if (!start_.ports.empty()) team_->Reset(Changes(start_));
   Begin();
+}
+
+std::unique_ptr<SteppedTeam> TeamService::MakeTeam() {
+  if (options_.out) records_.emplace(*options_.out, options_.engine);
+  if (options_.engine == kOverDds)
+    return std::make_unique<EpisodesOverDds>(
+        options_.text, options_.path, options_.overrides,
+        EpisodesOverDds::Options{
+            .console = *options_.console, .witness = records_ ? &*records_ : nullptr, .may_go_on = options_.may_go_on});
+  auto team = std::make_unique<Episodes>(options_.text, options_.path, options_.overrides);
+  if (records_) team->SetWitnesses({&*records_});
+  return team;
 }
 
 bool TeamService::IsChange(const std::string& request) {
@@ -180,12 +191,13 @@ std::vector<Override> TeamService::Changes(const EpisodeStart& start) const {
 
 void TeamService::Begin() {
   ports_.clear();
-  for (const int id : AgentsThatAct(episodes_.experiment()))
-    ports_.push_back({id, episodes_.experiment().agent(id).law.params->action});
+  for (const int id : AgentsThatAct(team_->experiment()))
+    ports_.push_back({id, team_->experiment().agent(id).law.params->action});
 }
 
 Json TeamService::Answer(const Json& request) {
   const std::string kind(KindOf(request).name);
+  if (kind != "hello" && kind != "reset") team_->AwaitStates();
   Json answer{{"answer", kind}};
   if (request.contains("id")) answer["id"] = request["id"];
   if (kind == "hello") answer.update(Hello());
@@ -206,7 +218,7 @@ Json TeamService::Answer(const Json& request) {
 }
 
 Json TeamService::Hello() const {
-  const Experiment& experiment = episodes_.experiment();
+  const Experiment& experiment = team_->experiment();
   Json ports = Json::array(), keys = Json::array(), figures = Json::array();
   for (const Port& port : ports_) {
     const bool velocity = WantedBy(experiment.agent(port.agent).law) == Wanted::kVelocity;
@@ -225,7 +237,7 @@ Json TeamService::Hello() const {
   return {{"protocol", kServeProtocol},
           {"mascot", MASCOT_VERSION},
           {"name", experiment.run.name},
-          {"engine", kInProcess},
+          {"engine", options_.engine},
           {"agents", experiment.size()},
           {"rate_hz", experiment.control.rate_hz},
           {"ticks", experiment.ticks()},
@@ -246,38 +258,36 @@ const std::vector<TeamService::Figure>& TeamService::FigureTable() {
 }
 
 std::vector<double> TeamService::Figures() const {
-  const std::vector<Motion>& motions = episodes_.row().motions;
+  const std::vector<Motion>& motions = team_->row().motions;
   Separation separation;
   separation.Add(motions, std::vector<Axes>(motions.size(), Axes::kXyz));
   const double nearest_m = separation.in_space_m();
-  return {DisagreementOf(episodes_.now(), motions),
+  return {DisagreementOf(team_->now(), motions),
           std::isfinite(nearest_m) ? nearest_m : std::numeric_limits<double>::quiet_NaN()};
 }
 
-Json TeamService::State() const {
-  const Experiment& experiment = episodes_.experiment();
+Json TeamService::State() {
+  team_->AwaitStates();
+  const Experiment& experiment = team_->experiment();
   Json p = Json::array(), v = Json::array(), attitude = Json::array(), w = Json::array(), heard = Json::array(),
        lost = Json::array(), figures = Json::object();
   for (int id = 1; id <= experiment.size(); ++id) {
     std::array<double, kStateNumbers> numbers{};
-    StateTo(episodes_.row().motions[static_cast<std::size_t>(id - 1)], numbers);
+    StateTo(team_->row().motions[static_cast<std::size_t>(id - 1)], numbers);
     const std::span<const double> all(numbers);
     p.push_back(ListOf(all.subspan(0, 3)));
     v.push_back(ListOf(all.subspan(3, 3)));
     attitude.push_back(ListOf(all.subspan(6, 4)));
     w.push_back(ListOf(all.subspan(10, 3)));
-    Json ids = Json::array();
-    const Agent& agent = episodes_.agent(id);
-    for (const Heard& one : agent.heard()) ids.push_back(one.id);
-    heard.push_back(std::move(ids));
-    if (agent.is_lost()) lost.push_back(id);
+    heard.push_back(team_->HeardBy(id));
+    if (team_->IsLost(id)) lost.push_back(id);
   }
   const std::vector<double> values = Figures();
   for (std::size_t k = 0; k < values.size(); ++k) figures[FigureTable()[k].name] = values[k];
-  Json state{{"tick", episodes_.tick()},
-             {"t_s", experiment.time_s(episodes_.tick())},
-             {"over", episodes_.is_over()},
-             {"failure", episodes_.failure()},
+  Json state{{"tick", team_->tick()},
+             {"t_s", experiment.time_s(team_->tick())},
+             {"over", team_->is_over()},
+             {"failure", team_->failure()},
              {"p", std::move(p)},
              {"v", std::move(v)},
              {"attitude", std::move(attitude)},
@@ -297,7 +307,7 @@ Json TeamService::Reset(const Json& request) {
     start.seed = static_cast<std::uint64_t>(fields.Integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
     fields.Require();
   }
-  episodes_.Reset(Changes(start));
+  team_->Reset(Changes(start));
   start_ = std::move(start);
   Begin();
   return State();
@@ -345,11 +355,14 @@ Json TeamService::Step(const Json& request) {
 }
 
 void TeamService::Act(const Port& port, std::span<const double> action) {
-  if (!episodes_.agent(port.agent).is_lost() && episodes_.now().agent(port.agent).law.params->action > 0)
-    episodes_.Act(port.agent, action);
+  if (!team_->IsLost(port.agent) && team_->now().agent(port.agent).law.params->action > 0)
+    team_->Act(port.agent, action);
 }
 
 void TeamService::Step(std::int64_t ticks, std::span<const double> actions) {
+  if (ticks < 0 || ticks > kMostTicks)
+    throw std::invalid_argument(fmt::format("step: expected at most {} ticks, got {}", kMostTicks, ticks));
+  team_->AwaitStates();
   if (!actions.empty() && actions.size() != action_numbers())
     throw std::invalid_argument(
         fmt::format("actions: expected {} numbers, or none, got {}", action_numbers(), actions.size()));
@@ -358,8 +371,7 @@ void TeamService::Step(std::int64_t ticks, std::span<const double> actions) {
       Act(port, actions.first(port.numbers));
       actions = actions.subspan(port.numbers);
     }
-  if (ticks > 0 && episodes_.is_over()) episodes_.Step();  // which says so
-  for (; ticks > 0 && !episodes_.is_over() && (!options_.may_go_on || options_.may_go_on()); --ticks) episodes_.Step();
+  if (ticks > 0) team_->GoTo(team_->tick() + ticks, [this] { return !options_.may_go_on || options_.may_go_on(); });
 }
 
 Json TeamService::Take(const Json& event) {
@@ -370,18 +382,18 @@ Json TeamService::Take(const Json& event) {
     name.data = key;
     toml += (toml.empty() ? "" : "\n") + ToToml(name) + " = " + ToToml(ValueOf(value));
   }
-  episodes_.Take(toml);
-  return {{"tick", episodes_.tick() + 1}};
+  team_->Take(toml);
+  return {{"tick", team_->tick() + 1}};
 }
 
 Json TeamService::Save(const Json& request) {
   const std::string form = request.value("form", Json("number")).is_string() ? request.value("form", "number") : "";
-  if (form == "text") return {{"tick", episodes_.tick()}, {"text", TextOf({start_, episodes_.Save()})}};
+  if (form == "text") return {{"tick", team_->tick()}, {"text", TextOf({start_, team_->Save()})}};
   if (form != "number") throw std::invalid_argument("expected \"number\" or \"text\" as \"form\"");
   if (snapshots_.size() == kMostSnapshots)
     throw std::runtime_error(fmt::format("{} snapshots are kept: forget one first", kMostSnapshots));
-  snapshots_[next_snapshot_] = {start_, episodes_.Save()};
-  return {{"tick", episodes_.tick()}, {"snapshot", next_snapshot_++}};
+  snapshots_[next_snapshot_] = {start_, team_->Save()};
+  return {{"tick", team_->tick()}, {"snapshot", next_snapshot_++}};
 }
 
 Json TeamService::Restore(const Json& request) {
@@ -395,7 +407,7 @@ Json TeamService::Restore(const Json& request) {
   } else {
     snapshot = SnapshotOf(request)->second;
   }
-  episodes_.Restore(snapshot.flown, [] {});
+  team_->Restore(snapshot.flown, {});
   start_ = std::move(snapshot.start);
   Begin();
   return State();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -11,9 +12,11 @@
 #include <vector>
 
 #include "experiment/experiment.h"
-#include "orchestrator/engines/episodes.h"
+#include "orchestrator/engines/engine.h"
+#include "orchestrator/engines/stepped_team.h"
 #include "orchestrator/serving/recorded_series.h"
 #include "orchestrator/serving/snapshot_text.h"
+#include "system/console.h"
 
 namespace mascot {
 
@@ -28,10 +31,12 @@ class TeamService {
     std::string text, path;  ///< of the experiment
     std::vector<Override> overrides = {};
     std::vector<int> ports = {};           ///< agents that take actions, besides those that do by the file
+    std::string engine = kInProcess;       ///< which flies them
+    Console* console = nullptr;            ///< over DDS, what processes say goes there
     std::optional<std::string> out = {};   ///< every episode is recorded as a run in this folder: "1", "2", ...
     std::function<bool()> may_go_on = {};  ///< asked before each tick; false: a step ends early. Empty: always true
   };
-  /// The first episode is at its tick 0. Throws what Episodes throws.
+  /// The first episode is at its tick 0. Throws what the engine's episodes throw (SteppedTeam).
   explicit TeamService(Options options);
 
   /// An agent that takes actions.
@@ -42,7 +47,9 @@ class TeamService {
   const std::vector<Port>& ports() const { return ports_; }
   /// How many numbers the actions of all ports have together.
   std::size_t action_numbers() const;
-  const Episodes& episodes() const { return episodes_; }
+  const SteppedTeam& team() const { return *team_; }
+  /// Ends the episode, for good. Returns whether the process may end in order (SteppedTeam::Leave()).
+  bool Leave() { return team_->Leave(); }
 
   /// Whether the request changes something, so that one client alone may make it.
   static bool IsChange(const std::string& request);
@@ -64,8 +71,9 @@ class TeamService {
   std::vector<double> Figures() const;
 
  private:
+  std::unique_ptr<SteppedTeam> MakeTeam();
   Json Hello() const;
-  Json State() const;
+  Json State();
   Json Reset(const Json& request);
   Json Step(const Json& request);
   Json Take(const Json& event);
@@ -81,7 +89,7 @@ class TeamService {
   const Options options_;
   std::optional<RecordedSeries> records_;
   EpisodeStart start_;  // of this episode
-  Episodes episodes_;
+  const std::unique_ptr<SteppedTeam> team_;
   std::vector<Port> ports_;
   std::map<std::int64_t, ServedSnapshot> snapshots_;
   std::int64_t next_snapshot_ = 1;

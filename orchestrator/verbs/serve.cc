@@ -10,11 +10,14 @@
 #include <vector>
 
 #include "agent/user_code/law_at_work.h"
+#include "bus/leave.h"
+#include "orchestrator/engines/engine.h"
 #include "orchestrator/live/server/address.h"
 #include "orchestrator/live/server/origin.h"
 #include "orchestrator/serving/server.h"
 #include "orchestrator/serving/team_service.h"
 #include "orchestrator/verbs/config_args.h"
+#include "orchestrator/verbs/one_of.h"
 #include "orchestrator/verbs/verb.h"
 #include "system/console.h"
 #include "system/interruptions.h"
@@ -30,6 +33,7 @@ struct ServeArgs {
   ConfigArgs config;
   LiveAddress at{.port = kServePort};
   std::vector<int> ports;
+  std::string engine = kInProcess;
   std::optional<std::string> out;
   bool once = false, json = false;
 };
@@ -44,12 +48,14 @@ int Serve(ServeArgs& args) {
                     .path = args.config.Name(),
                     .overrides = args.config.Overrides(),
                     .ports = args.ports,
+                    .engine = args.engine,
+                    .console = &console,
                     .out = args.out,
                     .may_go_on = goes_on});
   before_serving.reset();
   interruptions.emplace(stop, console, [](int) {});
   ServeSocket socket(args.at, team);
-  const Experiment& experiment = team.episodes().experiment();  // a client's reset may end its life
+  const Experiment& experiment = team.team().experiment();  // a client's reset may end its life
   ExplainCrashes();
   if (args.json)
     std::cout << R"({"address": ")" << socket.address() << "\"}\n";
@@ -61,7 +67,10 @@ int Serve(ServeArgs& args) {
   FlushStandardOutput();
   const std::chrono::seconds patience(static_cast<int>(experiment.run.start_timeout_s) + 1);
   socket.Run(goes_on, args.once, patience);
-  return goes_on() ? kExitDone : 128 + interruptions->signal();
+  const bool has_ended = team.Leave();
+  const int code = goes_on() ? kExitDone : 128 + interruptions->signal();
+  if (!has_ended) LeaveNow({.code = code, .process = "orchestrator"});  // threads use what would be destroyed
+  return code;
 }
 
 }  // namespace
@@ -77,6 +86,8 @@ std::function<int()> SetUpServe(CLI::App& command) {
   command.add_option("--ports", args->ports, "agents that take actions in the place of their laws: 1,2")
       ->delimiter(',')
       ->type_name("AGENTS");
+  command.add_option("--engine", args->engine, "inprocess: in the server's process; dds: processes on a bus")
+      ->check(OneOf({kInProcess, kOverDds}));
   command.add_option("--out", args->out, "record each episode as a run, in the folders DIR/1, DIR/2, ...")
       ->type_name("DIR");
   command.add_flag("--once", args->once, "end when the client that steps the team is gone");

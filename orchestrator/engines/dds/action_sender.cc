@@ -8,8 +8,14 @@
 
 namespace mascot {
 
-ActionSender::ActionSender(Domain& domain, const Experiment& experiment, Recorder& recorder, ActionSource* source)
-    : domain_(domain), experiment_(experiment), recorder_(recorder), feed_(experiment, source) {
+ActionSender::ActionSender(Domain& domain, const Experiment& experiment, Recorder& recorder, ActionSource* source,
+                           Stepper* stepper)
+    : domain_(domain),
+      experiment_(experiment),
+      recorder_(recorder),
+      feed_(experiment, source),
+      stepper_(stepper),
+      motions_(stepper == nullptr ? 0 : experiment.agents.size()) {
   for (const AgentRange& process : AgentProcesses(experiment))
     for (int id = process.first; id <= process.last; ++id)
       if (experiment.agent(id).takes_actions)
@@ -25,14 +31,25 @@ bool ActionSender::Matched() const {
 void ActionSender::Send(std::int64_t rows) {
   const bool realtime = experiment_.run.mode == Mode::kRealtime;
   bool acted = false;
-  for (; recorder_.HasStates(next_tick_) && (realtime || rows == next_tick_); ++next_tick_, acted = true)
+  for (; recorder_.HasStates(next_tick_) && (realtime || rows == next_tick_) && MayAct(); ++next_tick_, acted = true)
     Act(next_tick_);
   if (acted && recorder_.HasStates(next_tick_)) domain_.Wake();  // nobody has answered: all agents are lost
   for (Taker& taker : takers_) SendTo(taker);
 }
 
+bool ActionSender::MayAct() {
+  TakeEvents(next_tick_);
+  if (stepper_ == nullptr) return true;
+  if (shown_ < next_tick_) {
+    recorder_.StatesOf(next_tick_, motions_);
+    stepper_->See(next_tick_, motions_, events_now_, feed_.now());
+    events_now_.clear();
+    shown_ = next_tick_;
+  }
+  return stepper_->MayGoOn(next_tick_);
+}
+
 void ActionSender::Act(std::int64_t tick) {
-  TakeEvents(tick);
   feed_.GoTo(tick);
   for (Taker& taker : takers_) {
     const std::span<const double> action = feed_.Of(taker.id);
@@ -49,6 +66,7 @@ void ActionSender::TakeEvents(std::int64_t tick) {
     if (event.tick > tick) return;
     ++events_;
     feed_.Take(event);
+    if (stepper_ != nullptr) events_now_.push_back(event);
     if (event.restart)
       for (Taker& taker : takers_) taker.is_found = taker.is_found && taker.id != *event.restart;
   }

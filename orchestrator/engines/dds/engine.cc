@@ -82,7 +82,8 @@ void LowerPriority() {
 class DdsRun {
  public:
   DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-         RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros, ActionSource* actions);
+         RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros, ActionSource* actions,
+         Stepper* stepper);
   void LeaveIfKilled(const std::string& path, const std::string& text) { last_words_ = {path, text}; }
   EngineResult Fly();
   bool End();
@@ -143,6 +144,7 @@ class DdsRun {
   StopSignal& stop_;
   RosSource* const ros_;
   ActionSource* const action_source_;  // may be null
+  Stepper* const stepper_;             // may be null
   const WallClock::time_point launched_ = WallClock::now();
   WallClock::time_point next_reminder_ = launched_ + BetweenReminders();
   std::vector<std::pair<AgentRange, std::string>> losses_;  // of which no event tells yet: agents, and what happened
@@ -195,19 +197,21 @@ class DdsRun {
   std::optional<RunLinks> links_;
   RowFeed feed_;
   std::optional<Recorder> recorder_;
-  std::optional<ActionSender> actions_;  // if agents take some
+  std::optional<ActionSender> actions_;  // if agents take some, or somebody steps the run
   std::optional<RosPublisher> ros_publisher_;
   RunPhases phases_;
 };
 
 DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-               RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros, ActionSource* actions)
+               RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros, ActionSource* actions,
+               Stepper* stepper)
     : experiment_(experiment),
       run_requests_(requests),
       console_(console),
       stop_(stop),
       ros_(ros),
-      action_source_(actions),
+      action_source_(stepper != nullptr ? stepper : actions),
+      stepper_(stepper),
       external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
       reaches_others_(external_ || !std::ranges::all_of(experiment.hosts, &HostConfig::is_here)),
       processes_(AgentProcesses(experiment)),
@@ -276,8 +280,9 @@ void DdsRun::Join() {
   links_.emplace(*domain_, peers_, experiment_,
                  LogFile(folder_.Log("orchestrator"), [this](const std::string& words) { console_.Warning(words); }),
                  wake);
-  recorder_.emplace(*domain_, experiment_, feed_);
-  if (TakesActions(experiment_)) actions_.emplace(*domain_, experiment_, *recorder_, action_source_);
+  recorder_.emplace(*domain_, experiment_, feed_, /*stepped=*/stepper_ != nullptr);
+  if (TakesActions(experiment_) || stepper_ != nullptr)
+    actions_.emplace(*domain_, experiment_, *recorder_, action_source_, stepper_);
   if (ros_ != nullptr) ShowToRos();
 }
 
@@ -891,8 +896,9 @@ void DdsRun::LeaveDomain() {
 }
 
 DdsEngine::DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
-                     RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros, ActionSource* actions)
-    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, requests, console, stop, ros, actions)) {}
+                     RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros, ActionSource* actions,
+                     Stepper* stepper)
+    : run_(std::make_unique<DdsRun>(experiment, folder, sinks, requests, console, stop, ros, actions, stepper)) {}
 
 DdsEngine::~DdsEngine() { End(); }
 

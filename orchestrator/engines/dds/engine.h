@@ -5,6 +5,7 @@
 
 #include "experiment/experiment.h"
 #include "orchestrator/control/run_requests.h"
+#include "orchestrator/engines/dds/stepper.h"
 #include "orchestrator/engines/engine.h"
 #include "orchestrator/engines/ros_source.h"
 #include "orchestrator/recording/run_folder.h"
@@ -20,12 +21,13 @@ class DdsRun;
 /// Runs an experiment as separate processes in a DDS domain of its own: a physics server and the agent processes. It
 /// waits for external agents, and does not start them. The calling process records: `sinks` get every row, in tick
 /// order. People steer the run by `requests`; null: they cannot. `ros`, if given, is published for RViz2. `actions`:
-/// what agents do whose laws take actions; null: they are given 0.
+/// what agents do whose laws take actions; null: they are given 0. `stepper`: who steps the run from outside, and gives
+/// these actions himself; null: nobody does.
 class DdsEngine {
  public:
   DdsEngine(const Experiment& experiment, const RunFolder& folder, const std::vector<RowSink*>& sinks,
             RunRequests* requests, Console& console, StopSignal& stop, RosSource* ros = nullptr,
-            ActionSource* actions = nullptr);
+            ActionSource* actions = nullptr, Stepper* stepper = nullptr);
   ~DdsEngine();  ///< calls End()
   DdsEngine(const DdsEngine&) = delete;
   DdsEngine& operator=(const DdsEngine&) = delete;

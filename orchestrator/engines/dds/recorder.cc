@@ -36,14 +36,15 @@ T ReadAt(const RawReader::Bytes& bytes, std::size_t offset) {
   return value;
 }
 
-RowWindow::Rules WindowRules(const Experiment& experiment) {
+RowWindow::Rules WindowRules(const Experiment& experiment, bool stepped) {
   RowWindow::Rules rules{.topics = {Topic::Clock()},
                          .agents = experiment.size(),
                          .last_tick = experiment.ticks(),
                          .realtime = experiment.run.mode == Mode::kRealtime,
                          .ticks = kHistoryDepth,
                          .patience = kPatience,
-                         .batch = kBatch};
+                         .batch = kBatch,
+                         .stepped = stepped};
   // What is sent in bundles has gone through the server, which leaves out what an event leaves unanswered.
   rules.doubts =
       !experiment.network.is_bundled() && !rules.realtime && experiment.run.on_agent_loss != OnAgentLoss::kAbort;
@@ -58,11 +59,11 @@ RowWindow::Rules WindowRules(const Experiment& experiment) {
 
 }  // namespace
 
-Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed)
+Recorder::Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed, bool stepped)
     : domain_(domain),
       experiment_(experiment),
       feed_(feed),
-      window_(WindowRules(experiment)),
+      window_(WindowRules(experiment, stepped)),
       taken_(experiment.size()) {
   for (std::vector<std::size_t>* indices : {&states_, &commands_, &messages_, &actions_})
     indices->resize(experiment.agents.size());
@@ -190,6 +191,11 @@ std::vector<mascot_msgs::msg::Event> Recorder::Events(std::size_t skip) const {
 bool Recorder::HasStates(std::int64_t tick) const {
   const std::lock_guard lock(mutex_);
   return window_.HasStates(tick);
+}
+
+void Recorder::StatesOf(std::int64_t tick, std::span<Motion> motions) const {
+  const std::lock_guard lock(mutex_);
+  DecodeStates(window_.RowOf(tick), motions);
 }
 
 bool Recorder::TakeAction(int agent, std::int64_t tick, std::span<const std::uint8_t> bytes) {

@@ -19,7 +19,8 @@ namespace mascot {
 /// assembles rows (RowWindow). Samples arrive in DDS threads; rows go to the feed in the thread that calls Drain.
 class Recorder {
  public:
-  Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed);
+  /// `stepped`: rows wait for EndActions(), also if no agent takes actions.
+  Recorder(Domain& domain, const Experiment& experiment, RowFeed& feed, bool stepped = false);
 
   /// Whether every reader has matched a writer.
   bool Matched() const;
@@ -31,10 +32,12 @@ class Recorder {
   std::vector<mascot_msgs::msg::Event> Events(std::size_t skip = 0) const;
   /// Whether all states of `tick` have come, and the events that they speak of.
   bool HasStates(std::int64_t tick) const;
+  /// Reads the states of `tick`, which have all come, by id - 1.
+  void StatesOf(std::int64_t tick, std::span<Motion> motions) const;
   /// Records what agent `agent` is given at `tick`, of which all states have come. Returns false, and does not, if it
   /// is lost.
   bool TakeAction(int agent, std::int64_t tick, std::span<const std::uint8_t> bytes);
-  /// All actions of `tick` have been taken: where agents take some, its row waits for that.
+  /// All actions of `tick` have been taken: where agents take some, or somebody steps the run, its row waits for that.
   void EndActions(std::int64_t tick);
   /// The server has told its last tick (RowWindow::Settle()).
   void Settle();

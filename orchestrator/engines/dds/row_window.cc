@@ -12,7 +12,7 @@ namespace mascot {
 
 RowWindow::RowWindow(Rules rules)
     : rules_(std::move(rules)),
-      takes_actions_(std::ranges::count(rules_.topics, TopicKind::kAction, &Topic::kind) > 0),
+      awaits_actions_(rules_.stepped || std::ranges::count(rules_.topics, TopicKind::kAction, &Topic::kind) > 0),
       slots_(static_cast<std::size_t>(rules_.ticks)),
       sequences_(rules_.topics.size(), 0) {
   for (Slot& slot : slots_) slot.row = Row(rules_.agents);
@@ -37,6 +37,7 @@ void RowWindow::Begin(Slot& slot, std::int64_t tick) const {
     throw std::runtime_error(
         fmt::format("the recorder was overrun: tick {} came while tick {} was not written", tick, rows_));
   slot.tick = tick;
+  slot.row.tick = tick;
   slot.samples = 0;
   slot.states = 0;
   slot.events = 0;
@@ -65,7 +66,7 @@ bool RowWindow::Take(std::size_t index, std::int64_t tick, std::span<const std::
   const bool completes = slot.samples + silent_ == rules_.topics.size();
   complete_ += completes;
   return complete_ >= rules_.batch || tick == rules_.last_tick || newest_ - rows_ == rules_.patience ||
-         (takes_actions_ && (completes || (tick > acted_ && HasStates(tick))));
+         (awaits_actions_ && (completes || (tick > acted_ && HasStates(tick))));
 }
 
 bool RowWindow::TakeEvent(const Event& event, std::span<const std::uint8_t> bytes, std::int64_t sequence) {
@@ -110,7 +111,7 @@ bool RowWindow::Lacks(const Slot& slot, const Topic& topic) const {
 
 bool RowWindow::IsReady(const Slot& slot, bool give_up) {
   if (slot.tick != rows_ || slot.events > events_ + std::ssize(slot.row.events)) return false;
-  if (takes_actions_ && slot.tick > acted_) return false;
+  if (awaits_actions_ && slot.tick > acted_) return false;
   if (rules_.doubts && !settled_ && !give_up && slot.tick < rules_.last_tick && !HasStates(slot.tick + 1)) return false;
   if (IsWhole(slot)) return true;
   const bool states_complete = slot.states == rules_.agents + 1;
@@ -130,7 +131,7 @@ void RowWindow::LeaveOut(Slot& slot) {
   if (!silences_.empty())  // what came too late, and was not taken by the server
     for (const Topic& topic : rules_.topics)
       if (IsSilent(topic, slot.tick)) SampleOf(slot.row, topic).clear();
-  if (rules_.realtime && takes_actions_)  // an agent that has missed the tick did not take its action
+  if (rules_.realtime && awaits_actions_)  // an agent that has missed the tick did not take its action
     for (std::size_t i = 0; i < slot.row.actions.size(); ++i)
       if (slot.row.commands[i].empty()) slot.row.actions[i].clear();
 }

@@ -16,8 +16,8 @@ namespace mascot {
 /// topics. The sequence numbers of each writer prove that no sample is lost (CheckSequence). Agents that are lost, as
 /// events say, send nothing.
 ///
-/// Actions come from here: a row waits until those of its tick are taken (EndActions()). They are recorded with the
-/// answers to them alone.
+/// Actions come from here: where agents take some, or somebody steps the run, a row waits until those of its tick are
+/// taken (EndActions()). They are recorded with the answers to them alone.
 ///
 /// Without DDS, clock or lock: Recorder passes in the samples and takes the rows.
 class RowWindow {
@@ -34,6 +34,7 @@ class RowWindow {
     /// Agents may be lost at any tick, and what they have sent may have come here, but not to the server: the row of a
     /// tick is taken only with the states of the next one, which come after the event that says so.
     bool doubts = false;
+    bool stepped = false;  ///< somebody steps the run
   };
   explicit RowWindow(Rules rules);
 
@@ -54,9 +55,11 @@ class RowWindow {
   void Settle() { settled_ = true; }
   /// Whether an agent is lost for the time being, as the events so far say.
   bool IsLost(int agent) const { return silences_.Has(agent, rules_.last_tick); }
-  /// Whether all states of `tick` have come, and the events that they speak of. Where agents take actions, rows should
-  /// be taken without delay then, and when a row is complete.
+  /// Whether all states of `tick` have come, and the events that they speak of. Where rows wait for actions, they
+  /// should be taken without delay then, and when one is complete.
   bool HasStates(std::int64_t tick) const;
+  /// What has come of `tick`, if HasStates() is true of it.
+  const Row& RowOf(std::int64_t tick) const { return slots_[PlaceOf(tick)].row; }
   /// All actions of `tick` have been taken.
   void EndActions(std::int64_t tick) { acted_ = tick; }
   /// Whether agents of the topic are lost at `tick`, as the events so far say.
@@ -99,7 +102,7 @@ class RowWindow {
   bool Lacks(const Slot& slot, const Topic& topic) const;
 
   const Rules rules_;
-  const bool takes_actions_;
+  const bool awaits_actions_;
   std::vector<Slot> slots_;
   std::vector<std::int64_t> sequences_;  // newest sequence number, by topic
   std::int64_t rows_ = 0;

@@ -5,6 +5,7 @@ import contextlib
 import json
 import os
 import pathlib
+import shutil
 import signal
 import socket
 import struct
@@ -274,6 +275,142 @@ class Steps(Served):
         with self.client(self.team) as client:
             self.assertEqual([client.ask("snapshot")["snapshot"] for _ in range(256)], list(range(1, 257)))
             self.assertEqual(client.ask("snapshot")["error"], "256 snapshots are kept: forget one first")
+
+
+class OverDds(Served):
+    """A team of processes is the same as one in the server's process, to the bit."""
+
+    def session(self, engine, do, *arguments):
+        """What `do` returns with a client, and the bytes of the recordings of its episodes."""
+        out = self.folder / f"episodes_{engine}"
+        with self.client(self.team, "--engine", engine, "--out", out, "--set", "output.save_plot=false", *arguments) as client:
+            told = do(client)
+        self.assertEqual(self.code, 0)
+        return told, [(folder / "run.mcap").read_bytes() for folder in sorted(out.iterdir())]
+
+    def both(self, do, *arguments):
+        here, there = (self.session(engine, do, *arguments) for engine in ("inprocess", "dds"))
+        self.assertEqual(here[0], there[0])
+        self.assertEqual(len(here[1]), len(there[1]))
+        for one, other in zip(here[1], there[1]):
+            self.assertTrue(one == other, "run.mcap differs")
+        return there[0]
+
+    def states(self, client, *requests):
+        """The answers to these requests; a state without the folder of its recording, whose name has the engine's."""
+        answers = [client.ask(kind, **fields) for kind, fields in requests]
+        for answer in answers:
+            self.assertNotIn("error", answer)
+            answer.pop("recording", None)
+        return answers
+
+    def test_hello_names_the_engine(self):
+        with self.client(self.team, "--engine", "dds") as client:
+            self.assertEqual(client.about["engine"], "dds")
+
+    def test_by_their_laws(self):
+        last = self.both(lambda client: self.states(client, ("look", {}), ("step", {}), ("step", {"ticks": 7}), ("look", {}),
+                                                    ("step", {"ticks": 1000})))[-1]
+        self.assertEqual((last["tick"], last["over"]), (50, True))
+
+    def test_with_actions(self):
+        def do(client):
+            return self.states(client, ("step", {"actions": [[1, 0, 0], [0, -1, 0]], "ticks": 20}),
+                               ("set", {"set": {"law.p_gain": 0.5}}), ("goto", {"agent": 2, "position_m": [1, 2, 3]}),
+                               ("step", {"actions": {"3": [0.5, 0, 0]}}), ("reset", {"seed": 3, "ports": [2]}),
+                               ("step", {"actions": [0, 0, 0.5], "ticks": 5}), ("step", {"ticks": 1000}))
+        self.team.write_text(TEAM.replace('"consensus"', '"consensus"\nleader = 2'))
+        states = self.both(do, "--ports", "1,3")
+        self.assertEqual([states[1]["tick"], states[2]["tick"], states[3]["tick"], states[4]["tick"]], [21, 21, 21, 0])
+        subprocess.run([ORCHESTRATOR, "verify", self.folder / "episodes_dds/1"], check=True, timeout=LIMIT_S,
+                       stdout=subprocess.DEVNULL)
+
+    def test_with_links_that_lose_and_messages_on_both_deliveries(self):
+        self.team.write_text(TEAM.replace('"consensus"', '"actions"\nmessage = 2') +
+                             "[link]\nloss = 0.5\ndelay_s = 0.02\n")
+        def do(client):
+            action = [0.1, 0.2, 0.3, 4.0, 5.0]
+            return self.states(client, *[("step", {"actions": [action, None, action]})] * 12)
+        for delivery in ("bundled", "topics"):
+            heard = [state["heard"] for state in self.both(do, "--set", f"network.delivery='{delivery}'")]
+            self.assertGreater(len({json.dumps(one) for one in heard}), 1, "links lose some")
+            shutil.rmtree(self.folder / "episodes_dds")
+            shutil.rmtree(self.folder / "episodes_inprocess")
+
+    def test_in_which_agents_are_lost_and_come_back(self):
+        def do(client):
+            return self.states(client, ("step", {"ticks": 3}), ("event", {"event": {"fault": {"agent": 2, "kind": "kill"}}}),
+                               ("step", {"ticks": 3}), ("event", {"event": {"restart": 2}}), ("step", {"ticks": 2}))
+        states = self.both(do, "--set", "run.on_agent_loss='drop'", "--ports", "1")
+        self.assertEqual([states[k]["lost"] for k in (0, 2, 4)], [[], [2], []])
+        self.assertEqual(states[2]["heard"][1], [])
+
+    def test_snapshots_come_back_in_either_engine(self):
+        with self.client(self.team, "--ports", "1", "--engine", "dds") as client:
+            client.ask("step", actions=[1, 0, 0], ticks=7)
+            client.ask("set", set={"law.p_gain": 0.5})
+            client.ask("step", ticks=2)
+            number, text = client.ask("snapshot")["snapshot"], client.ask("snapshot", form="text")["text"]
+            ahead = client.ask("step", actions=[0, 1, 0], ticks=7)
+            self.assertEqual(client.ask("restore", snapshot=number)["tick"], 9)
+            self.assertEqual(client.ask("step", actions=[0, 1, 0], ticks=7), ahead)
+        with self.client(self.team) as client:
+            self.assertEqual(client.ask("restore", text=text)["tick"], 9)
+            self.assertEqual(client.ask("step", actions=[0, 1, 0], ticks=7), ahead)
+
+    def test_nobody_is_late_while_the_client_thinks(self):
+        with self.client(self.team, "--ports", "1", "--engine", "dds", "--set", "run.agent_timeout_s=0.1") as client:
+            client.ask("step", actions=[1, 0, 0], ticks=7)
+            self.up(self.team)  # which takes longer than that
+            self.assertEqual(client.ask("step", actions=[1, 0, 0])["tick"], 8)
+
+    def test_law_that_fails_is_told_in_words(self):
+        self.team.write_text(TEAM.replace('"consensus"', '''"custom"
+python = """
+def control(t, me, neighbours):
+    return [0, 0, 1 / (3 - round(100 * t))]
+"""'''))
+        with self.client(self.team, "--engine", "dds") as client:
+            self.assertIn("ZeroDivisionError", client.ask("step", ticks=10)["error"])
+            state = client.ask("look")
+            self.assertEqual((state["tick"], state["over"]), (3, True))
+            self.assertIn("ZeroDivisionError", state["failure"])
+            self.assertEqual(client.ask("step")["error"], "the episode is over: expected a reset")
+            self.assertEqual(client.ask("event", event={"cut": [[1, 2]]})["error"], "event by hand: the episode is over")
+            self.assertEqual(client.ask("reset")["failure"], "")
+
+    def test_start_that_fails_is_told_in_words(self):
+        self.team.write_text(TEAM + "[[hosts]]\nname = 'other'\nagents = '1'\nlaunch = ['false']\n")
+        with self.client(self.team, "--engine", "dds") as client:
+            self.assertIn("other", client.ask("look")["error"])
+            self.assertIn("other", client.ask("step")["error"])
+
+    def test_events_are_refused_in_the_words_of_one_process(self):
+        def words(engine):
+            with self.client(self.team, "--engine", engine) as client:
+                return [client.ask("event", event=event).get("error") for event in (
+                    {"set": {"law.p_gian": 1}}, {"cut": [[1, 9]]}, {"at_s": 1, "cut": [[1, 2]]}, {})]
+        self.assertEqual(words("dds"), words("inprocess"))
+
+    def test_what_it_cannot_fly_is_refused(self):
+        for key, words in (("run.mode='realtime'", 'expected run.mode = "lockstep", got "realtime"'),
+                           ("network.ros_view=true", "expected network.ros_view = false, got true")):
+            done = subprocess.run([ORCHESTRATOR, "serve", self.team, "--engine", "dds", "--set", key], capture_output=True,
+                                  text=True, timeout=LIMIT_S)
+            self.assertEqual((done.returncode, done.stderr), (2, f"error: {self.team}: {words}\n"))
+
+    def test_signal_ends_it_and_leaves_nothing(self):
+        with self.server(self.team, "--engine", "dds", "--duration-s", "100000", once=False) as (address, process):
+            client = Client(address)
+            client.ask("step", ticks=2)
+            children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+            started = [int(pid) for task in pathlib.Path(f"/proc/{process.pid}/task").iterdir()
+                       for pid in (task / "children").read_text().split()]
+            self.assertGreaterEqual(len(started), 4, children)
+            client.send("step", ticks=1000000)
+        self.assertEqual(self.code, 130)
+        self.assertEqual([pid for pid in started if pathlib.Path(f"/proc/{pid}").exists()], [])
+        client.close()
 
 
 class Mistakes(Served):
