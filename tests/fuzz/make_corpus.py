@@ -186,6 +186,35 @@ def viewers():
     }
 
 
+# --- what clients of `orchestrator serve` say ---------------------------------------------------------------
+
+
+def served():
+    """Lists of messages, as tests/fuzz/serve.cc reads them."""
+    def lines(*messages):
+        return b"".join(struct.pack("<BH", 0, len(one)) + one for one in messages)
+
+    def step(ticks, *actions):
+        content = struct.pack(f"<I{len(actions)}d", ticks, *actions)
+        return struct.pack("<BH", 1, len(content)) + content
+
+    hello = b'{"request":"hello","protocol":1}'
+    return {
+        "steps": lines(hello, b'{"request":"step","actions":[1,0,0],"ticks":3,"id":7}', b'{"request":"look"}',
+                       b'{"request":"step","actions":{"1":[0,1,0]}}', b'{"request":"step","ticks":100}', b'{"request":"close"}'),
+        "resets": lines(hello, b'{"request":"reset","seed":3,"ports":[1,2],"set":{"law.p_gain":0.5,"law.axes":"xyz"}}',
+                        b'{"request":"step","actions":[[1,0,0],null]}', b'{"request":"reset","ports":[]}'),
+        "events": lines(hello, b'{"request":"set","set":{"law.p_gain":0.1},"agents":[1]}', b'{"request":"step"}',
+                        b'{"request":"goto","agent":2,"position_m":[1,2,3]}',
+                        b'{"request":"event","event":{"fault":{"agent":2,"kind":"kill"}}}', b'{"request":"step","ticks":2}'),
+        "snapshots": lines(hello, b'{"request":"step","ticks":4}', b'{"request":"snapshot"}', b'{"request":"step"}',
+                           b'{"request":"restore","snapshot":1}', b'{"request":"forget","snapshot":1}',
+                           b'{"request":"snapshot","form":"text"}', b'{"request":"restore","text":"{}"}'),
+        "binary": lines(b'{"request":"hello","protocol":1,"form":"binary"}', b'{"request":"look"}') + step(3, 1, 0, 0) + step(1),
+        "stranger": lines(b"GET / HTTP/1.1\r"),
+    }
+
+
 # --- networks -----------------------------------------------------------------------------------------------
 
 
@@ -257,7 +286,7 @@ def networks():
 def main():
     programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release")
     for name, files in [("samples", samples()), ("recording", recordings(programs)), ("protocols", protocols()),
-                        ("viewers", viewers()), ("network", networks())]:
+                        ("viewers", viewers()), ("serve", served()), ("network", networks())]:
         (CORPUS / name).mkdir(parents=True, exist_ok=True)
         for file, data in files.items():
             (CORPUS / name / file).write_bytes(data)
