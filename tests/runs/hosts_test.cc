@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <optional>
 
 #include "experiment/events.h"
 #include "orchestrator/recording/indexed_rows.h"
@@ -82,16 +83,7 @@ class Hosts : public testing::Test {
     up_words.insert(up_words.end(), more.begin(), more.end());
     Running up("ip", hosts_.Here(up_words), folder_.File("up"));
     ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id"); })) << up.err();
-    const std::string said = up.err();
-    std::vector<std::string> agent_words{bin + "/agent", "--id", std::to_string(external_id), "--domain",
-                                         std::to_string(std::stoi(said.substr(said.find("domain ") + 7)))};
-    if (const auto at = said.find("THIS-HOST:"); at != std::string::npos)
-      agent_words.insert(agent_words.end(),
-                         {"--discovery", "10.77.0.1:" + std::to_string(std::stoi(said.substr(at + 10)))});
-    if (const auto at = said.find("--credentials "); at != std::string::npos)
-      agent_words.insert(agent_words.end(), {"--peers-at", "10.77.0.1", "--credentials",
-                                             said.substr(at + 14, said.find_first_of(" \n", at + 14) - at - 14)});
-    Running agent("ip", hosts_.There(agent_words), folder_.File("agent"));
+    Running agent("ip", hosts_.There(AgentWords(up.err(), external_id)), folder_.File("agent"));
     if (meanwhile) meanwhile();
     EXPECT_EQ(up.Wait(), 0) << up.err() << agent.err() << ReadFile(folder_.File("run/logs/orchestrator.log"));
     EXPECT_EQ(agent.Wait(), 0) << agent.err();
@@ -99,6 +91,18 @@ class Hosts : public testing::Test {
     Up inprocess(folder_, "inprocess", folder_.File("run/config.toml"), {"--engine", "inprocess", "--force"});
     EXPECT_EQ(inprocess.Wait(), 0) << inprocess.err();
     EXPECT_TRUE(inprocess.File("run.mcap") == ReadFile(folder_.File("run/run.mcap"))) << "run.mcap differs";
+  }
+
+  /// What starts agent `id` on the other host for a run that has said this.
+  static std::vector<std::string> AgentWords(const std::string& said, int id) {
+    std::vector<std::string> words{MASCOT_BINARY_DIR "/agent", "--id", std::to_string(id), "--domain",
+                                   std::to_string(std::stoi(said.substr(said.find("domain ") + 7)))};
+    if (const auto at = said.find("THIS-HOST:"); at != std::string::npos)
+      words.insert(words.end(), {"--discovery", "10.77.0.1:" + std::to_string(std::stoi(said.substr(at + 10)))});
+    if (const auto at = said.find("--credentials "); at != std::string::npos)
+      words.insert(words.end(), {"--peers-at", "10.77.0.1", "--credentials",
+                                 said.substr(at + 14, said.find_first_of(" \n", at + 14) - at - 14)});
+    return words;
   }
 
   /// Runs a verb of the orchestrator on our host.
@@ -246,6 +250,58 @@ leader = 2
   const Difference second = FirstDifference(folder_.File("run"), fly("goto_alone", goto_alone));
   EXPECT_EQ(second.tick, gain_set);
   EXPECT_THAT(second.agents, ElementsAre(2));
+}
+
+TEST_F(Hosts, ATeamWithAnAgentOnAnotherHostIsSteppedByActions) {
+  const std::string bin = MASCOT_BINARY_DIR, file = folder_.File("told.toml"), client = folder_.File("client.py");
+  WriteFile(file, R"(
+[run]
+duration_s = 0.3
+[agents]
+count = 3
+model = "double_integrator"
+random = {}
+override = [{ id = 2, host = "external" }]
+[graph]
+topology = "ring"
+[law]
+name = "actions"
+message = 1
+)");
+  WriteFile(client, R"(
+import json, socket, sys
+lines = socket.create_connection(("127.0.0.1", int(sys.argv[1])), timeout=60).makefile("rw")
+def ask(request, **fields):
+    print(json.dumps({"request": request, **fields}), file=lines, flush=True)
+    print(lines.readline(), end="")
+ask("hello", protocol=1)
+for k in range(6):
+    ask("step", ticks=5, actions=[[0.1 * k, 0, 0, 1], [0, 0.2 * k, 0, 2], None])
+)");
+  const auto serve = [&](const std::string& engine) {
+    return hosts_.Here({bin + "/orchestrator", "serve", file, "--at", "127.0.0.1:0", "--once", "--engine", engine});
+  };
+  const auto told = [&](const std::string& engine, const std::function<void(const Running&)>& meanwhile) {
+    Running server("ip", serve(engine), folder_.File(engine));
+    const std::string at = "stepped at 127.0.0.1:";
+    EXPECT_TRUE(Until([&] { return server.Said("(Ctrl-C ends)"); })) << server.err();
+    const std::string said = server.err(), port = std::to_string(std::stoi(said.substr(said.find(at) + at.size())));
+    Running asks("ip", hosts_.Here({"/usr/bin/python3", client, port}), folder_.File("asks"));
+    meanwhile(server);
+    EXPECT_EQ(asks.Wait(), 0) << asks.err() << server.err();
+    const std::string answers = asks.out();
+    EXPECT_EQ(server.Wait(), 0) << server.err();
+    return answers.substr(answers.find('\n'));  // without hello, which names the engine
+  };
+  std::optional<Running> agent;
+  const std::string over_dds = told("dds", [&](const Running& server) {
+    ASSERT_TRUE(Until([&] { return server.Said("waiting for: agent --id"); })) << server.err();
+    agent.emplace("ip", hosts_.There(AgentWords(server.err(), 2)), folder_.File("agent"));
+  });
+  ASSERT_TRUE(agent);
+  EXPECT_EQ(agent->Wait(), 0) << agent->err();
+  EXPECT_THAT(over_dds, HasSubstr("\"tick\":30"));
+  EXPECT_EQ(over_dds, told("inprocess", [](const Running&) {}));
 }
 
 TEST_F(Hosts, AnAgentOnAnotherHostJoinsThroughTheDiscoveryServer) {
