@@ -368,6 +368,7 @@ class Package(unittest.TestCase):
                 there("usr/bin", ["orchestrator", "agent", "physics_server"]),
                 there("usr/share/mascot/configs", [*tree("configs", "*.toml"), *tree("configs", "*.onnx")]),
                 there("usr/share/mascot/page", tree("orchestrator/live/page", "*.*")),
+                there("usr/share/mascot/idl", ["mascot.idl", "fastdds.xml", "qos.xml"]),
                 there("usr/share/mascot/matlab", tree("matlab", "*.m")),
                 there("usr/share/mascot_msgs", ["package.xml", "CMakeLists.txt", *tree("idl/mascot_msgs", "*.msg")]),
                 there("usr/share/man/man1", (path.name for path in (BUILD / "man").glob("*"))),
