@@ -7,16 +7,16 @@ function msfun_team(block)
 %   3  run.seed; []: as the file has it
 %   4  options of mascot.Team, for example {'set', {'law.p_gain', 0.1}, 'out', 'runs/simulink'}; {}: none
 %
-% Input, if there are agents that take actions: a row for each of them, what it wants in W along x, y and z, and then the
-% numbers of its message, one row after the other in a vector. Outputs:
+% Input, if there are agents that take actions: a row for each of them, what it wants in W along x, y and z, and then
+% the numbers of its message, one row after the other in a vector. Outputs:
 %   1  positions in W (m), agents x 3            4  angular velocities in B (rad/s), agents x 3
 %   2  velocities in W (m/s), agents x 3         5  1: the episode is over, and the other outputs stay as they are
 %   3  unit quaternions x, y, z, w, agents x 4
 %
-% The block is discrete, with the rate of the team (control.rate_hz). Its outputs at tick k do not depend on its input at
-% tick k, which acts from k to k + 1. A step cannot be taken back: no stepping back, and no saved operating point.
+% The block is discrete, with the rate of the team (control.rate_hz). Its outputs at tick k do not depend on its input
+% at tick k, which acts from k to k + 1. A step cannot be taken back: no stepping back, and no saved operating point.
 block.NumDialogPrms = 4;
-team = open_team(block);  % what Simulink asks of a block when the model is not running: sizes and the sample time
+team = open_team(block, false);  % Simulink asks for sizes and the sample time when the model does not run, too
 agents = team.about.agents;
 numbers = sum([team.about.ports.numbers]);
 rate_hz = team.about.rate_hz;
@@ -57,7 +57,7 @@ block.InputPort(port).SamplingMode = mode;
 end
 
 function start(block)
-teams(block.BlockHandle, open_team(block));
+teams(block.BlockHandle, open_team(block, true));
 end
 
 function initialize(block)
@@ -87,9 +87,14 @@ if ~isempty(team), team.close(); end
 teams(block.BlockHandle, []);
 end
 
-function team = open_team(block)
+function team = open_team(block, records)
 options = block.DialogPrm(4).Data;
-team = mascot.Team(block.DialogPrm(1).Data, 'ports', block.DialogPrm(2).Data, 'seed', block.DialogPrm(3).Data, options{:});
+if ~records  % there will be no episode
+  out = 2 * find(strcmp(options(1:2:end), 'out')) - 1;
+  options([out, out + 1]) = [];
+end
+team = mascot.Team(block.DialogPrm(1).Data, 'ports', block.DialogPrm(2).Data, 'seed', block.DialogPrm(3).Data, ...
+                   options{:});
 end
 
 function team = teams(handle, team)

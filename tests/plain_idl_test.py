@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""What is installed for programs that read a run over DDS: the plain IDL, whose types must be those of the wire, profiles,
-which must say what the table of topics does, and the table of docs/matlab.md. That such programs read a run is tested in
-tests/runs/plain_idl_test.cc."""
+"""What is installed for programs that read a run over DDS: the plain IDL, whose types must be those of the wire,
+profiles, which must say what the table of topics does, and the table of docs/matlab.md. That such programs read a run
+is tested in tests/runs/plain_idl_test.cc."""
 
 import os
 import pathlib
@@ -21,7 +21,8 @@ OMG = "{http://www.omg.org/spec/DDS-XML}"
 
 def types_in(*files):
     """The names with which generated code registers types."""
-    return sorted(name for file in files for name in re.findall(r'setName\("([^"]+)"\)', (GENERATED / file).read_text()))
+    text = "".join((GENERATED / file).read_text() for file in files)
+    return sorted(re.findall(r'setName\("([^"]+)"\)', text))
 
 
 def topics():
@@ -41,8 +42,8 @@ def qos(reader, space, prefix=""):
         return reader.find("/".join(space + step for step in path.split("/"))).text.removesuffix("_QOS")
     history = "topic/historyQos" if prefix else "history"
     return (one(f"{prefix}reliability/kind").removesuffix("_RELIABILITY"),
-            one(f"{prefix}durability/kind").removesuffix("_DURABILITY"), one(f"{history}/kind").removesuffix("_HISTORY"),
-            int(one(f"{history}/depth")))
+            one(f"{prefix}durability/kind").removesuffix("_DURABILITY"),
+            one(f"{history}/kind").removesuffix("_HISTORY"), int(one(f"{history}/depth")))
 
 
 class PlainIdl(unittest.TestCase):

@@ -1,7 +1,7 @@
 classdef Team < handle
 % mascot.Team is a team of agents that waits to be stepped: the protocol of `orchestrator serve`, over TCP.
 %
-%   team = mascot.Team('configs/leaderless.toml', 'ports', [1 2]);   % starts a server (not on Windows), which ends with team
+%   team = mascot.Team('configs/leaderless.toml', 'ports', [1 2]);   % starts a server (not on Windows)
 %   team = mascot.Team('192.168.1.4:8770');                          % joins a server
 %
 %   team.reset(3, {'law.p_gain', 0.1});      % seed, keys and values
@@ -54,8 +54,8 @@ classdef Team < handle
       joins = ~isempty(regexp(where, '^[^/\\]*:\d+$', 'once'));
       if joins
         if ~isempty([options.out options.engine options.orchestrator])
-          error('mascot:option', 'out, engine and orchestrator are for a server that is started, and %s is one that runs', ...
-                where);
+          error('mascot:option', ...
+                'out, engine and orchestrator are for a server that is started, and %s is one that runs', where);
         end
         address = where;
       else
@@ -84,8 +84,8 @@ classdef Team < handle
     end
 
     function reset(team, seed, sets, ports)
-      % reset(SEED, SETS, PORTS) begins an episode. What is left out, or [], is as before, and the seed as the server was
-      % started with. SETS: {'law.p_gain', 0.1, ...}; {}: none.
+      % reset(SEED, SETS, PORTS) begins an episode. What is left out, or [], is as before, and the seed as the server
+      % was started with. SETS: {'law.p_gain', 0.1, ...}; {}: none.
       fields = struct();
       if nargin > 1 && ~isempty(seed), fields.seed = seed; end
       if nargin > 2 && iscell(sets), fields.set = mascot.Team.keys_of(sets); end
@@ -97,13 +97,15 @@ classdef Team < handle
     end
 
     function step(team, actions, ticks)
-      % step(ACTIONS, TICKS) flies on, by default one tick. ACTIONS: a row for each port, as about.ports has them: what the
-      % agent wants in W along x, y and z, and then the numbers of its message. []: those before hold; the first are 0.
+      % step(ACTIONS, TICKS) flies on, by default one tick. ACTIONS: a row for each port, as about.ports has them:
+      % what the agent wants in W along x, y and z, and then the numbers of its message. []: those before hold; the
+      % first are 0.
       if nargin < 2, actions = []; end
       if nargin < 3, ticks = 1; end
       numbers = sum([team.about.ports.numbers]);
       if ~isempty(actions) && numel(actions) ~= numbers
-        error('mascot:actions', 'expected %d numbers for %d ports, got %d', numbers, numel(team.about.ports), numel(actions));
+        error('mascot:actions', 'expected %d numbers for %d ports, got %d', numbers, numel(team.about.ports), ...
+              numel(actions));
       end
       if ~(isscalar(ticks) && ticks >= 0 && ticks == fix(ticks) && ticks <= 1000000)
         error('mascot:actions', 'expected an integer from 0 to 1000000 as ticks');
@@ -134,8 +136,9 @@ classdef Team < handle
     end
 
     function tick = event(team, happening)
-      % event(HAPPENING) is any event, as a struct with the keys of [[events]] but at_s, from the next tick on, which it
-      % returns: team.event(struct('fault', struct('agent', 2, 'kind', 'kill'))). A list of one number is a cell: {3}.
+      % event(HAPPENING) is any event, as a struct with the keys of [[events]] but at_s, from the next tick on, which
+      % it returns: team.event(struct('fault', struct('agent', 2, 'kind', 'kill'))). A list of one number is a cell:
+      % {3}.
       answer = team.ask('event', struct('event', happening));
       tick = answer.tick;
     end
@@ -149,7 +152,8 @@ classdef Team < handle
 
     function restore(team, kept)
       % restore(KEPT) goes back to a snapshot, a number or a text.
-      if ischar(kept), team.ask('restore', struct('text', kept)); else, team.ask('restore', struct('snapshot', kept)); end
+      if ischar(kept), name = 'text'; else, name = 'snapshot'; end
+      team.ask('restore', struct(name, kept));
       team.read_about(team.ask('hello', struct('protocol', 1, 'form', 'binary')));  % it may have other ports
       team.look();
     end
@@ -283,11 +287,13 @@ classdef Team < handle
     end
 
     function options = options_of(pairs)
-      options = struct('ports', [], 'seed', [], 'set', {{}}, 'out', '', 'engine', '', 'orchestrator', '', 'timeout_s', 60);
+      options = struct('ports', [], 'seed', [], 'set', {{}}, 'out', '', 'engine', '', 'orchestrator', '', ...
+                       'timeout_s', 60);
       for k = 1:2:numel(pairs)
         name = char(pairs{k});
         if ~isfield(options, name) || k == numel(pairs)
-          error('mascot:option', 'expected one of %s, with a value, got %s', strjoin(fieldnames(options).', ', '), name);
+          error('mascot:option', 'expected one of %s, with a value, got %s', ...
+                strjoin(fieldnames(options).', ', '), name);
         end
         options.(name) = pairs{k + 1};
       end

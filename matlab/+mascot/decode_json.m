@@ -1,6 +1,6 @@
 function value = decode_json(text)
-% decode_json(TEXT) is jsondecode(TEXT), with each number as the double that is nearest to its digits. Octave's jsondecode
-% may be off in the last bit.
+% decode_json(TEXT) is jsondecode(TEXT), with each number as the double that is nearest to its digits. Octave's
+% jsondecode may be off in the last bit.
 [tokens, between] = regexp(text, '"(?>(?:[^"\\]|\\.)*)"|-?\d[-+.eE\d]*', 'match', 'split');
 is_number = cellfun(@(token) token(1) ~= '"', tokens);
 numbers = sscanf(strjoin(tokens(is_number), ' '), '%f').';

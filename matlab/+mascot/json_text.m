@@ -39,7 +39,8 @@ text = ['[' strjoin(cellfun(@mascot.json_text, items(:).', 'UniformOutput', fals
 end
 
 function text = object_of(names, items)
-pairs = cellfun(@(name, item) [quoted(name) ':' mascot.json_text(item)], names(:).', items(:).', 'UniformOutput', false);
+pairs = cellfun(@(name, item) [quoted(name) ':' mascot.json_text(item)], names(:).', items(:).', ...
+                'UniformOutput', false);
 text = ['{' strjoin(pairs, ',') '}'];
 end
 

@@ -1,7 +1,7 @@
 function arrays = read_npz(file)
-% read_npz(FILE) reads a file of NumPy arrays (states.npz) into a struct, with a field for each array, of its shape: a(k, i,
-% axis) is NumPy's a[k-1, i-1, axis-1]. It reads what MASCOT writes: arrays of numbers that are not compressed.
-% Error mascot:file: what is wrong with the file.
+% read_npz(FILE) reads a file of NumPy arrays (states.npz) into a struct, with a field for each array, of its shape:
+% a(k, i, axis) is NumPy's a[k-1, i-1, axis-1]. It reads what MASCOT writes: arrays of numbers that are not
+% compressed. Error mascot:file: what is wrong with the file.
 id = fopen(file, 'r', 'ieee-le');
 if id < 0, error('mascot:file', 'cannot open %s', file); end
 cleanup = onCleanup(@() fclose(id));
@@ -42,7 +42,9 @@ end
 
 function array = array_at(id, file, name)
 start = fread(id, 8, 'uint8=>uint8').';
-if ~isequal(start(1:min(end, 6)), uint8([147, double('NUMPY')])), error('mascot:file', '%s: %s is no NumPy array', file, name); end
+if ~isequal(start(1:min(end, 6)), uint8([147, double('NUMPY')]))
+  error('mascot:file', '%s: %s is no NumPy array', file, name);
+end
 if start(7) == 1, length = fread(id, 1, 'uint16'); else, length = fread(id, 1, 'uint32'); end
 head = fread(id, length, 'uint8=>char').';
 types = struct('f8', 'double', 'f4', 'single', 'i8', 'int64', 'i4', 'int32', 'u8', 'uint64', 'u4', 'uint32', ...

@@ -4,9 +4,10 @@ function run = read_run(folder)
 %   run = mascot.read_run('runs/leaderless/2026-01-31T10-00-00');
 %   plot(run.t, squeeze(run.position(:, 3, :)));     % agent 3
 %
-% Fields: the arrays of states.npz (docs/recording.md): t (rows x 1), id (1 x agents), position, velocity, angular_velocity,
-% acceleration_command (rows x agents x 3), orientation (rows x agents x 4: w, x, y, z), actuator (rows x agents x 4), flags
-% (rows x agents); where there is no states.npz, those of states.mat. Numbers have the bits of the recording. Also:
+% Fields: the arrays of states.npz (docs/recording.md): t (rows x 1), id (1 x agents), position, velocity,
+% angular_velocity, acceleration_command (rows x agents x 3), orientation (rows x agents x 4: w, x, y, z), actuator
+% (rows x agents x 4), flags (rows x agents); where there is no states.npz, those of states.mat. Numbers have the bits
+% of the recording. Also:
 %   events     struct array, a line of events.csv each: t_s, until_s, what, count, agent, with, detail
 %   summary    summary.json
 %   figures    struct array: the numbers of the summary, with name ('consensus.settling_time_s') and value

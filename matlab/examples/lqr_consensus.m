@@ -5,11 +5,12 @@ function [flown, predicted, t, gains] = lqr_consensus(config, options, weights)
 %   options = {'set', {'agents.model', 'double_integrator'}, 'engine', 'dds'};
 %   [flown, predicted] = lqr_consensus('configs/leaderless.toml', options);
 %
-% With e = p - mean(p) and its rate e', the cost  int q_p |e|^2 + q_v |e'|^2 + r |u|^2 dt, WEIGHTS = [q_p q_v r], asks the
-% same of each agent and axis:
+% With e = p - mean(p) and its rate e', the cost  int q_p |e|^2 + q_v |e'|^2 + r |u|^2 dt, WEIGHTS = [q_p q_v r], asks
+% the same of each agent and axis:
 %   u_i = -k_p (p_i - mean(p)) - k_v (v_i - mean(v)),
-% where [k_p k_v] is the gain of one double integrator, by the Riccati equation. Its solution is X = U2 / U1 of the stable
-% eigenvectors [U1; U2] of the Hamiltonian matrix. For this plant, k_p = sqrt(q_p / r) and k_v = sqrt(q_v / r + 2 k_p).
+% where [k_p k_v] is the gain of one double integrator, by the Riccati equation. Its solution is X = U2 / U1 of the
+% stable eigenvectors [U1; U2] of the Hamiltonian matrix. For this plant, k_p = sqrt(q_p / r) and k_v = sqrt(q_v / r +
+% 2 k_p).
 %
 % An action holds for a period h, and the physics moves such a body as the equations of motion do, so
 %   x(k + 1) = (F - G [k_p k_v]) x(k),  F = [1 h; 0 1],  G = [h^2 / 2; h],
@@ -30,7 +31,8 @@ h = 1 / team.about.rate_hz;
 closed = [1 h; 0 1] - [h^2 / 2; h] * gains;
 around_mean = eye(agents) - ones(agents) / agents;
 
-x = [reshape(around_mean * team.p(:, 1:2), 1, []); reshape(around_mean * team.v(:, 1:2), 1, [])];  % a column for each agent and axis
+% A column for each agent and axis.
+x = [reshape(around_mean * team.p(:, 1:2), 1, []); reshape(around_mean * team.v(:, 1:2), 1, [])];
 [flown, predicted] = deal(zeros(ticks + 1, agents, 2));
 for k = 1:ticks + 1
   flown(k, :, :) = reshape(around_mean * team.p(:, 1:2), 1, agents, 2);

@@ -1,6 +1,7 @@
 function [p_gain, cost] = tune_p_gain(config, options, evaluations)
-% tune_p_gain(CONFIG, OPTIONS, EVALUATIONS) looks for the law.p_gain with which a team agrees best, by fminsearch: each
-% evaluation is an episode. The cost is the mean square of the disagreement (m^2) over the episode, at every tenth tick.
+% tune_p_gain(CONFIG, OPTIONS, EVALUATIONS) looks for the law.p_gain with which a team agrees best, by fminsearch:
+% each evaluation is an episode. The cost is the mean square of the disagreement (m^2) over the episode, at every
+% tenth tick.
 %
 %   p_gain = tune_p_gain('configs/leaderless.toml');
 %

@@ -1,6 +1,7 @@
 classdef StubBlock < handle
-% StubBlock plays the part of Simulink for a Level-2 MATLAB S-function: Simulink.MSFcnRunTimeBlock and the order in which
-% Simulink calls the methods. Inputs are NaN but in the methods that may read them; an output must have its port's size.
+% StubBlock plays the part of Simulink for a Level-2 MATLAB S-function: Simulink.MSFcnRunTimeBlock and the order in
+% which Simulink calls the methods. Inputs are NaN but in the methods that may read them; an output must have its
+% port's size.
 
   properties
     BlockHandle

@@ -12,7 +12,9 @@ import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
+import time
 import unittest
 import zipfile
 
@@ -47,11 +49,14 @@ def as_matlab(value):
 def octave(function, *arguments, matlab=ROOT / "matlab"):
     folders = [matlab, matlab / "examples", ROOT / "tests/matlab"]
     text = f"addpath({', '.join(map(as_matlab, folders))}); {function}({', '.join(map(as_matlab, arguments))});"
-    done = subprocess.run(["octave-cli", "--norc", "--quiet", "--eval", text], capture_output=True, text=True,
-                          timeout=LIMIT_S)
+    with tempfile.TemporaryDirectory(prefix="mascot-octave-") as temporary:
+        done = subprocess.run(["octave-cli", "--norc", "--quiet", "--eval", text], capture_output=True, text=True,
+                              timeout=LIMIT_S, env={**os.environ, "TMPDIR": temporary})
+        left = os.listdir(temporary)
     if done.returncode:
         raise AssertionError(f"{function}: {done.stderr}")
-    return done.stdout
+    if left:
+        raise AssertionError(f"{function} leaves files: {left}")
 
 
 def options(engine):
@@ -67,7 +72,8 @@ def as_written(state):
     """A state as docs/serve.md has it, in the form of write_state.m."""
     numbers = [sum(row, []) for row in zip(state["p"], state["v"], state["attitude"], state["w"])]
     return {"tick": state["tick"], "t": state["t_s"], "over": int(state["over"]), "failed": int(state["failure"] != ""),
-            "numbers": numbers, "heard": state["heard"], "lost": state["lost"], "figures": list(state["figures"].values())}
+            "numbers": numbers, "heard": state["heard"], "lost": state["lost"],
+            "figures": list(state["figures"].values())}
 
 
 class Teams(serve_test.Served):
@@ -87,7 +93,8 @@ class Teams(serve_test.Served):
             octave("steps", self.team, options(engine), folder)
             expected, answers = [], []
             more = [word if word != "engine" else "--engine" for word in ENGINES[engine]]
-            with self.client(self.team, "--ports", "1,2", "--seed", "3", "--set", "run.on_agent_loss=drop", *more) as client:
+            more += ["--ports", "1,2", "--seed", "3", "--set", "run.on_agent_loss=drop"]
+            with self.client(self.team, *more) as client:
                 ask = client.ask
 
                 def note(state):
@@ -119,16 +126,39 @@ class Teams(serve_test.Served):
             self.assertEqual(lines_of(folder / "answers")[:-1], answers)
             recording = pathlib.Path(lines_of(folder / "answers")[-1])
             self.assertEqual(recording.parent, folder / "episodes")
-            subprocess.run([BUILD / "orchestrator", "verify", recording], check=True, capture_output=True, timeout=LIMIT_S)
+            subprocess.run([BUILD / "orchestrator", "verify", recording], check=True, capture_output=True,
+                           timeout=LIMIT_S)
 
     def test_mistakes_are_told_in_words(self):
         failing = self.folder / "failing.toml"
         failing.write_text(FAILING)
+        silent, pid = self.folder / "silent", self.folder / "pid"
+        silent.write_text(f"#!/bin/sh\necho not yet >&2\necho $$ > '{pid}'\nexec sleep 1000\n")
+        silent.chmod(0o755)
         for engine in self.for_each_engine():
-            octave("mistakes", self.team, options(engine), self.folder, failing, self.folder)
+            octave("mistakes", self.team, options(engine), self.folder, failing, silent)
+            self.await_end_of(int(pid.read_text()))
+
+    def test_give_their_options_to_the_server(self):
+        program, noted = self.folder / "it's a program", self.folder / "noted"
+        program.write_text(f"#!/bin/sh\nprintf '%s\\n' \"$@\" > '{noted}'\necho error: as asked >&2\nexit 2\n")
+        program.chmod(0o755)
+        octave("words", program)
+        self.assertEqual(noted.read_text().splitlines(), [
+            "serve", "it's $HOME.toml", "--once", "--json", "--at", "127.0.0.1:0", "--ports", "1,12,3", "--seed",
+            "9007199254740992", "--out", 'a "b"', "--engine", "dds", "--set", "run.duration_s=0.10000000000000001", "--set",
+            "law.axes=xyz", "--set", "agents.position_m=[[1,2,3],[4,5,0.33333333333333331]]", "--set",
+            "output.save_plot=false"])
+
+    def await_end_of(self, process):
+        deadline = time.monotonic() + LIMIT_S
+        while pathlib.Path(f"/proc/{process}").exists():
+            self.assertLess(time.monotonic(), deadline, "a server is left")
+            time.sleep(0.01)
 
     def test_join_servers_that_run(self):
-        self.team.write_text(serve_test.TEAM.replace('"consensus"', '"consensus"\nleader = 1\nleader_waypoints_m = [[9, 0, 1]]'))
+        leader = '"consensus"\nleader = 1\nleader_waypoints_m = [[9, 0, 1]]'
+        self.team.write_text(serve_test.TEAM.replace('"consensus"', leader))
         with contextlib.ExitStack() as stack:
             address, _ = stack.enter_context(self.server(self.team, once=False))
             silent = stack.enter_context(socket.create_server(("127.0.0.1", 0)))  # nobody accepts
@@ -140,7 +170,7 @@ class Teams(serve_test.Served):
 
     def test_simulink_steps_them(self):
         for engine in self.for_each_engine():
-            octave("simulink", self.team, options(engine))
+            octave("simulink", self.team, options(engine), self.folder / engine)
 
     def test_examples_hold_what_they_say(self):
         for engine in self.for_each_engine():
@@ -151,12 +181,14 @@ class Teams(serve_test.Served):
         shutil.copytree(ROOT / "matlab", installed)
         (self.folder / "prefix/bin").mkdir()
         (self.folder / "prefix/bin/orchestrator").symlink_to(BUILD / "orchestrator")
-        octave("installed", self.team, matlab=installed)
+        config = self.folder / "a team that's mine.toml"
+        config.write_text(TEAM)
+        octave("installed", config, matlab=installed)
 
 
 class Runs(serve_test.Served):
     def test_are_read_as_in_python(self):
-        self.team.write_text(serve_test.TEAM.replace("duration_s = 0.5", "duration_s = 0.5\non_agent_loss = 'drop'") + """
+        self.team.write_text(serve_test.TEAM.replace("duration_s = 0.5", "duration_s = 0.5\non_agent_loss='drop'") + """
 [[events]]
 at_s = 0.1
 set = { "law.p_gain" = 0.02, "law.beta" = 0.3 }
@@ -208,7 +240,8 @@ fault = { agent = 2, kind = "kill" }
 class Json(serve_test.Served):
     def test_numbers_keep_their_bits(self):
         dice = random.Random(1)
-        numbers = [dice.uniform(-1, 1) * 10.0 ** dice.randint(-300, 300) for _ in range(5000)] + [0.1, 5e-324, 1e23, -0.0]
+        numbers = [dice.uniform(-1, 1) * 10.0 ** dice.randint(-300, 300) for _ in range(5000)]
+        numbers += [0.1, 5e-324, 1e23, -0.0]
         content = {"list": numbers, "nested": {"a": [0.3, {"b": numbers[0]}], "c": -1.5e-7}, "holes": [1, None, 3],
                    "text": 'a "1.5" \\ 2.5 \n\t \u00e9'}
         (self.folder / "numbers").write_text(json.dumps(content))

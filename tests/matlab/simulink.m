@@ -1,8 +1,8 @@
-function simulink(config, options)
+function simulink(config, options, out)
 % The S-function between two stub blocks of Simulink, beside teams that are stepped without it.
 gains = -[0.1 0.3];
 first = StubBlock(2.0001, {config, [1 2], 3, options});
-second = StubBlock(3.0001, {config, [], [], [options {'set', {'law.p_gain', 0.1}}]});
+second = StubBlock(3.0001, {config, [], [], [options {'out', out, 'set', {'law.p_gain', 0.1}}]});
 msfun_team(first);
 msfun_team(second);
 assert(isequal(first.SampleTimes, [0.01 0]) && first.InputPort(1).Dimensions == 6 && second.NumInputPorts == 0);
@@ -32,6 +32,8 @@ assert(isequal(again{1}, beside.p) && again{5} == 0);
 first.terminate();
 second.terminate();
 first.terminate();  % no mistake: Simulink does so after an error in Start
+run = mascot.read_run(fullfile(out, '1'));
+assert(isequal(squeeze(run.position(51, :, :)), quiet.p) && ~isfolder(fullfile(out, '2')));
 beside.close();
 quiet.close();
 expect_error(@() msfun_team(StubBlock(4, {config, 9, [], options})), 'mascot:start', '.*from 1 to 3, got 9');

@@ -7,7 +7,7 @@ texts = {'null'};
 for k = 1:numel(figures)
   if isnan(figures{k}), texts{k} = 'null'; else, texts{k} = mascot.json_text(figures{k}); end
 end
-fprintf(file, '{"tick":%d,"t":%.17g,"over":%d,"failed":%d,"numbers":%s,"heard":%s,"lost":%s,"figures":[%s]}\n', team.tick, ...
-        team.t, team.over, team.failed, mascot.json_text(values), mascot.json_text(heard), ...
+form = '{"tick":%d,"t":%.17g,"over":%d,"failed":%d,"numbers":%s,"heard":%s,"lost":%s,"figures":[%s]}\n';
+fprintf(file, form, team.tick, team.t, team.over, team.failed, mascot.json_text(values), mascot.json_text(heard), ...
         mascot.json_text(num2cell(team.lost)), strjoin(texts, ','));
 end
