@@ -184,7 +184,7 @@ classdef Team < handle
       catch problem
         error('mascot:connection', 'cannot connect to %s: %s', address, problem.message);
       end
-      write(team.socket, uint8(sprintf('{"request":"hello","protocol":1,"form":"binary"}\n')), 'uint8');
+      team.put(uint8(sprintf('{"request":"hello","protocol":1,"form":"binary"}\n')));
       line = zeros(1, 0, 'uint8');
       while isempty(line) || line(numel(line)) ~= 10  % after the answer, the server says nothing unasked
         line = [line, team.take(max(1, double(team.socket.NumBytesAvailable)))]; %#ok<AGROW>
@@ -204,12 +204,14 @@ classdef Team < handle
 
     function send(team, kind, content)
       if isempty(team.socket), error('mascot:connection', 'this team is closed'); end
-      frame = [typecast(uint32(1 + numel(content)), 'uint8'), uint8(kind), reshape(content, 1, [])];
+      team.put([typecast(uint32(1 + numel(content)), 'uint8'), uint8(kind), reshape(content, 1, [])]);
+    end
+
+    function put(team, bytes)
       try
-        write(team.socket, frame, 'uint8');
-      catch problem
-        team.socket = [];
-        error('mascot:connection', 'the server is gone: %s', problem.message);
+        write(team.socket, bytes, 'uint8');
+      catch problem  % not in Octave, which tells of a lost connection when it reads
+        team.leave(problem.message);
       end
     end
 
@@ -229,9 +231,13 @@ classdef Team < handle
         reason = problem.message;
       end
       if numel(bytes) ~= count  % what comes later would be taken for another answer
-        team.socket = [];
-        error('mascot:connection', 'no answer of the server: %s', reason);
+        team.leave(reason);
       end
+    end
+
+    function leave(team, reason)
+      team.socket = [];
+      error('mascot:connection', 'no answer of the server: %s', reason);
     end
 
     function read_about(team, answer)

@@ -146,8 +146,8 @@ class Teams(serve_test.Served):
         octave("words", program)
         self.assertEqual(noted.read_text().splitlines(), [
             "serve", "it's $HOME.toml", "--once", "--json", "--at", "127.0.0.1:0", "--ports", "1,12,3", "--seed",
-            "9007199254740992", "--out", 'a "b"', "--engine", "dds", "--set", "run.duration_s=0.10000000000000001", "--set",
-            "law.axes=xyz", "--set", "agents.position_m=[[1,2,3],[4,5,0.33333333333333331]]", "--set",
+            "9007199254740992", "--out", 'a "b"', "--engine", "dds", "--set", "run.duration_s=0.10000000000000001",
+            "--set", "law.axes=xyz", "--set", "agents.position_m=[[1,2,3],[4,5,0.33333333333333331]]", "--set",
             "output.save_plot=false"])
 
     def await_end_of(self, process):
