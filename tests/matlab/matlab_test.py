@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import shutil
 import socket
 import subprocess
@@ -47,16 +48,21 @@ def as_matlab(value):
 
 
 def octave(function, *arguments, matlab=ROOT / "matlab"):
+    run(f"{function}({', '.join(map(as_matlab, arguments))});", matlab)
+
+
+def run(code, matlab=ROOT / "matlab"):
     folders = [matlab, matlab / "examples", ROOT / "tests/matlab"]
-    text = f"addpath({', '.join(map(as_matlab, folders))}); {function}({', '.join(map(as_matlab, arguments))});"
+    text = f"addpath({', '.join(map(as_matlab, folders))});\n{code}"
+    path = f"{BUILD}:{os.environ['PATH']}"
     with tempfile.TemporaryDirectory(prefix="mascot-octave-") as temporary:
         done = subprocess.run(["octave-cli", "--norc", "--quiet", "--eval", text], capture_output=True, text=True,
-                              timeout=LIMIT_S, env={**os.environ, "TMPDIR": temporary})
+                              timeout=LIMIT_S, env={**os.environ, "TMPDIR": temporary, "PATH": path})
         left = os.listdir(temporary)
     if done.returncode:
-        raise AssertionError(f"{function}: {done.stderr}")
+        raise AssertionError(f"{code}: {done.stderr}")
     if left:
-        raise AssertionError(f"{function} leaves files: {left}")
+        raise AssertionError(f"{code} leaves files: {left}")
 
 
 def options(engine):
@@ -235,6 +241,18 @@ fault = { agent = 2, kind = "kill" }
         with zipfile.ZipFile(self.folder / "other.npz", "w") as file:
             file.writestr("a.txt", "no array")
         octave("refused", self.folder)
+
+
+class Page(serve_test.Served):
+    def test_shows_code_that_runs(self):
+        blocks = re.findall(r"^```matlab\n(.*?)^```$", (ROOT / "docs/matlab.md").read_text(), re.M | re.S)
+        steps, = (block for block in blocks if "mascot.Team(" in block)
+        config, options = "/usr/share/mascot/configs", "'ports', [1 2]"
+        self.assertTrue(config in steps and options in steps)
+        run(steps.replace(config, str(ROOT / "configs")).replace(options, f"{options}, 'set', {{'run.duration_s', 1}}"))
+        reads, = (block for block in blocks if "mascot.read_run(" in block)
+        out = self.up(self.team, "--set", "output.save_plot=false")
+        run(re.sub(r"'runs/[^']*'", as_matlab(out), reads).replace("plot(", "isequal("))
 
 
 class Json(serve_test.Served):

@@ -25,8 +25,8 @@ expect_error(@() mascot.Team(config, options{:}, 'ports', 9), 'mascot:start', ..
              '.*/orchestrator ended: error: ports: expected agents of the team, from 1 to 3, got 9');
 expect_error(@() mascot.Team(config, 'orchestrator', fullfile(program, 'no program')), 'mascot:start', ...
              '.*no program ended: .*');
-expect_error(@() mascot.Team(config, 'orchestrator', silent, 'timeout_s', 0.2), 'mascot:start', ...
-             [silent ' says no address within 0.2 s: not yet']);
+expect_error(@() mascot.Team(config, 'orchestrator', silent, 'timeout_s', 3), 'mascot:start', ...
+             [silent ' says no address within 3 s: not yet']);
 
 team = mascot.Team(failing, options{:});
 expect_error(@() team.step([], 10), 'mascot:server', '.*ZeroDivisionError.*');
