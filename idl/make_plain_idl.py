@@ -9,8 +9,8 @@ import sys
 
 HEADER = """\
 // The types of a run on DDS, with the names that they have on the wire: for generators that know nothing of ROS 2
-// (fastddsgen without -typeros2, idlc, rtiddsgen, DDS Blockset). Made by idl/make_plain_idl.py. SI units; W is the world
-// (x east, y north, z up), B the body (x forward, y left, z up). docs/matlab.md says which topic has which type.
+// (fastddsgen without -typeros2, idlc, rtiddsgen, DDS Blockset). Made by idl/make_plain_idl.py. SI units; W is the world (x
+// east, y north, z up), B the body (x forward, y left, z up). docs/matlab.md says which topic has which type.
 
 """
 
