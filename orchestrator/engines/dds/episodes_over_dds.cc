@@ -28,6 +28,8 @@ namespace {
 
 /// How often it is asked whether to wait any longer.
 constexpr auto kLookEvery = std::chrono::milliseconds(50);
+/// How long a run that takes no more requests may take to end: longer than its recorder waits for what is missing.
+constexpr auto kEndsWithin = std::chrono::seconds(30);
 
 }  // namespace
 
@@ -97,7 +99,7 @@ class EpisodesOverDds::Run final : public Stepper, public RowSink {
     }
     Open(tick);
     const Answer answer = requests_.Ask({.kind = Request::Kind::kStep, .number = static_cast<double>(tick - from)});
-    if (!answer.granted && !is_over()) throw std::runtime_error(answer.words);
+    if (!answer.granted) return AwaitEnd(answer.words);
     Await(tick, goes_on);
   }
   /// Ends the run at its tick, if it is not over. Returns whether the DDS library has let go.
@@ -105,10 +107,7 @@ class EpisodesOverDds::Run final : public Stepper, public RowSink {
     if (!thread_.joinable()) return !hangs_;
     if (!is_over()) {
       Open(experiment_.ticks() + 1);
-      if (has_begun())
-        requests_.Ask({.kind = Request::Kind::kStop});
-      else
-        stop_.Raise(SIGTERM);
+      if (!has_begun() || !requests_.Ask({.kind = Request::Kind::kStop}).granted) stop_.Raise(SIGTERM);
       Await(experiment_.ticks(), [] { return true; });
     }
     thread_.join();
@@ -183,6 +182,12 @@ class EpisodesOverDds::Run final : public Stepper, public RowSink {
       open_ = tick;
     }
     stop_.Wake();
+  }
+  /// A request was refused: the run is over, or will be at once. Throws std::runtime_error with these words otherwise.
+  void AwaitEnd(const std::string& words) {
+    const auto deadline = std::chrono::steady_clock::now() + kEndsWithin;
+    Await(experiment_.ticks(), [deadline] { return std::chrono::steady_clock::now() < deadline; });
+    if (!is_over()) throw std::runtime_error(words);
   }
   void TellWitness() {
     if (std::exchange(is_witnessed_, false)) options_.witness->End(result_);
