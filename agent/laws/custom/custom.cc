@@ -39,57 +39,26 @@ constexpr Key kCustomParameters[] = {
         .Otherwise("where it stands"),
 };
 
-/// Reads the modules of the law: those of the key, else those in `folder`.
-void ReadModules(const std::string& folder, Section& law, CustomParams& params) {
-  Value modules;
-  if (!law.Has("modules")) {
-    try {
-      auto& found = std::get<Value::Table>(modules.data);
-      for (const auto& [path, text] : ModulesBeside(params.text, folder)) found[path].data = text;
-    } catch (const PythonError& error) {
-      law.Fail(TextKey(law), "expected modules that can be read, got " + error.summary());
-    }
-    if (std::get<Value::Table>(modules.data).empty()) return;  // the resolved file is shorter
-  }
-  modules = law.Free("modules", modules);
-  const auto* texts = std::get_if<Value::Table>(&modules.data);
-  if (texts == nullptr) return law.Fail("modules", "expected a table, got a " + law.Kind("modules"));
-  for (const auto& [path, text] : *texts) {
-    if (const auto* words = std::get_if<std::string>(&text.data))
-      params.modules[path] = *words;
-    else
-      law.FailInside("modules", path, "expected text");
-  }
-}
-
 /// Whether what only Python can tell of the law is to be found out.
 bool AsksPython(const Experiment& experiment) {
   return !experiment.checked && experiment.user_code == UserCode::kMayRun;
 }
 
-/// Reads the text of the law, and the file and line for messages.
-void ReadText(const Experiment& experiment, Section& law, CustomParams& params) {
-  law.Supersede("file", {"python", "python_file", "python_line", "modules"});
-  law.Supersede("python", {"file", "python_file", "python_line", "modules"});
-  if (!HasOneOf(law, "python", "file", "file")) return;
-  Section::FileText text;
-  int line = 1;
-  if (law.Has("file")) {
-    text = law.TextOfFile("file", "python");
-  } else {
-    const Section::Place place = law.PlaceOfText("python");
-    text = {law.Text("python"), place.file, place.folder};
-    line = place.line;
+/// The modules that the law imports. Notes a mistake if one cannot be read.
+PythonModules ImportedModules(Section& law, const LawText& text, const std::string& folder) {
+  try {
+    return ModulesBeside(text.text, folder);
+  } catch (const PythonError& error) {
+    law.Fail(TextKey(law, kPythonKey), "expected modules that can be read, got " + error.summary());
+    return {};
   }
-  params.text = text.text;
-  params.file = law.Text("python_file", text.name);
-  params.line = static_cast<int>(law.Integer("python_line", 1, 1'000'000, line));
-  if (params.text.find('\0') != std::string::npos) law.Fail(TextKey(law), "expected text, got a NUL byte");
-  if (!law.Wrong("") && (law.Has("modules") || AsksPython(experiment))) ReadModules(text.folder, law, params);
 }
 
 void ReadKeys(const Experiment& experiment, Section& law, CustomParams& params) {
-  ReadText(experiment, law, params);
+  const FindModules find = [&](const LawText& text, const std::string& folder) {
+    return ImportedModules(law, text, folder);
+  };
+  static_cast<LawText&>(params) = ReadLawText(law, kPythonKey, AsksPython(experiment) ? find : nullptr);
   params.data = ReadLawData(law);
   params.style = kPythonStyles.Value(law.OneOf("style"));
   params.wanted = kOutputs.Value(law.OneOf("output"));

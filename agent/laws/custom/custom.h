@@ -13,6 +13,7 @@
 #include "agent/laws/custom/custom_data.h"
 #include "agent/laws/custom/looked_up.h"
 #include "agent/laws/laws.h"
+#include "agent/laws/parts/law_text.h"
 #include "agent/python/internal.h"
 #include "experiment/experiment.h"
 
@@ -24,12 +25,8 @@ enum class PythonStyle {
   kMascot,    ///< control_user(...) of the published testbed
 };
 
-/// A law written in Python, and where its text stands.
-struct CustomParams final : LawParams {
-  std::string text;
-  std::string file;  ///< the file's name in messages
-  int line = 1;      ///< line of `file` at which `text` begins
-  PythonModules modules;
+/// A law written in Python.
+struct CustomParams final : LawParams, LawText {
   std::shared_ptr<const LawData> data;
   PythonStyle style = PythonStyle::kStandard;
   Wanted wanted = Wanted::kAcceleration;
@@ -139,8 +136,8 @@ std::unique_ptr<Law> MakePublishedLaw(const CustomParams& params, const CustomLi
 /// Whether its code can draw random numbers by run.seed.
 bool CanDraw(const CustomParams& params);
 
-/// The key of `law` that holds the text, or names its file.
-const char* TextKey(const Section& law);
+/// The key that may hold the text.
+inline constexpr const char* kPythonKey = "python";
 /// Runs the text once, to find mistakes in it and the functions that it defines. Returns whether it can send messages.
 bool TryText(Section& law, CustomParams& params, const LawLimits& limits);
 

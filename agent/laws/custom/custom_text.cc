@@ -29,7 +29,7 @@ std::span<const Callback> CallbacksOf(PythonStyle style) {
 void CheckCallback(Section& law, const CustomParams& params, const PythonModule& module, const Callback& callback) {
   const py::object function = module.Function(callback.name);
   const auto fail = [&](int line, const std::string& message) {
-    law.FailInText(TextKey(law), params.file + ":" + std::to_string(line) + ":1", message);
+    law.FailInText(TextKey(law, kPythonKey), params.file + ":" + std::to_string(line) + ":1", message);
   };
   if (function.is_none()) {
     if (callback.required) fail(params.line, std::string("expected a function ") + callback.name + ", got none");
@@ -56,7 +56,7 @@ void CheckParameters(Section& law, const CustomParams& params, const PythonModul
   const py::object declared = module.Parameters();
   if (declared.is_none()) return;
   if (!py::isinstance<py::dict>(declared))
-    return law.FailInText(TextKey(law), params.file + ":" + std::to_string(params.line) + ":1",
+    return law.FailInText(TextKey(law, kPythonKey), params.file + ":" + std::to_string(params.line) + ":1",
                           "expected PARAMETERS to be a dict, got " + Repr(declared));
   std::vector<std::string> names;
   for (const auto& [name, value] : declared.cast<py::dict>()) names.push_back(TextOf(py::str(name)));
@@ -79,12 +79,10 @@ void LoadNumPy() {
 
 }  // namespace
 
-const char* TextKey(const Section& law) { return law.Has("file") ? "file" : "python"; }
-
 bool TryText(Section& law, CustomParams& params, const LawLimits& limits) {
   const SuppressedPythonOutput suppressed;
   const PythonLock lock;
-  const char* key = TextKey(law);
+  const std::string key = TextKey(law, kPythonKey);
   const std::string who = "the law in " + params.file;
   LoadNumPy();
   try {
