@@ -1,68 +1,36 @@
 // What Python code prints.
-#include <atomic>
-#include <cstdio>
 #include <cstdlib>
-#include <mutex>
-#include <string>
-#include <string_view>
 
 #include "agent/python/internal.h"
-#include "base/after_last.h"
-#include "base/utf8.h"
+#include "agent/user_code/law_output.h"
 
 namespace mascot {
 namespace {
 
-std::atomic<int> suppressed = 0;
-
-/// Python's stdout and stderr: what Python code prints goes to stderr, because stdout belongs to the program, and is
-/// fit for a terminal. It goes there in whole lines, so that those of several threads do not mix; a line that is not
-/// over appears when Python flushes it, when it gets long, and at the end of the process.
+/// Python's stdout or stderr.
 class PythonOutput {
  public:
-  // They live as long as the process: Python uses them.
+  // They live as long as the process: Python uses them. At its end the GIL may be held by a law that hangs.
   static PythonOutput& OfOutput() {
-    static PythonOutput& output = *new PythonOutput(/*is_error=*/false);
+    static PythonOutput& output = *new PythonOutput(LawOutput::Kind::kUsual);
     return output;
   }
   static PythonOutput& OfErrors() {
-    static PythonOutput& output = *new PythonOutput(/*is_error=*/true);
+    static PythonOutput& output = *new PythonOutput(LawOutput::Kind::kErrors);
     return output;
   }
 
   std::size_t Write(const py::str& text) {
-    if (is_error_ || suppressed == 0) Add(TextOf(text));
+    output_.Add(TextOf(text));
     return py::len(text);
   }
-  void Flush() {
-    if (is_error_ || suppressed == 0) PrintAll();
-  }
-  void PrintAll() {
-    const std::lock_guard lock(mutex_);
-    Print(line_.size());
-  }
+  void Flush() { output_.Flush(); }
+  void PrintAll() { output_.PrintAll(); }
 
  private:
-  static constexpr std::size_t kLongestLine = 4096;
+  explicit PythonOutput(LawOutput::Kind kind) : output_(kind) {}
 
-  explicit PythonOutput(bool is_error) : is_error_(is_error) {}
-
-  void Add(const std::string& text) {
-    const std::lock_guard lock(mutex_);
-    line_ += text;
-    Print(line_.size() > kLongestLine ? line_.size() : line_.size() - AfterLast(line_, '\n').size());
-  }
-  void Print(std::size_t bytes) {
-    if (bytes == 0) return;
-    const std::string text = Plain(std::string_view(line_).substr(0, bytes));
-    std::fwrite(text.data(), 1, text.size(), stderr);
-    std::fflush(stderr);
-    line_.erase(0, bytes);
-  }
-
-  const bool is_error_;  // errors are never suppressed
-  std::mutex mutex_;     // at the end of the process the GIL may be held by a law that hangs
-  std::string line_;
+  LawOutput output_;
 };
 
 }  // namespace
@@ -81,8 +49,5 @@ void TakePythonOutput() {
     PythonOutput::OfErrors().PrintAll();
   });
 }
-
-SuppressedPythonOutput::SuppressedPythonOutput() { ++suppressed; }
-SuppressedPythonOutput::~SuppressedPythonOutput() { --suppressed; }
 
 }  // namespace mascot

@@ -21,16 +21,6 @@ PythonModules ModulesBeside(const std::string& text, const std::string& folder);
 /// Whether code in Python has run in this process.
 bool PythonHasStarted();
 
-/// While an object of this class lives, text that Python code in this process prints is dropped: for laws that run a
-/// second time, on ideal bodies.
-class SuppressedPythonOutput {
- public:
-  SuppressedPythonOutput();
-  ~SuppressedPythonOutput();
-  SuppressedPythonOutput(const SuppressedPythonOutput&) = delete;
-  SuppressedPythonOutput& operator=(const SuppressedPythonOutput&) = delete;
-};
-
 /// A mistake in the user's Python code.
 class PythonError : public std::runtime_error {
  public:

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "agent/laws/laws.h"
-#include "agent/python/python.h"
+#include "agent/user_code/law_output.h"
 
 namespace mascot {
 namespace {
@@ -31,7 +31,7 @@ std::int64_t CommandedByAcceleration(const Experiment& experiment) {
 }  // namespace
 
 Metrics::Metrics(const Experiment& experiment, Crew& crew) : experiment_(experiment) {
-  const SuppressedPythonOutput suppressed;  // the laws run a second time; discard what they print
+  const SuppressedLawOutput suppressed;  // the laws run a second time; discard what they print
   if (experiment.output.fidelity) ideal_.emplace(experiment, crew);
   accelerated_ = CommandedByAcceleration(experiment);
   Take(experiment);
@@ -83,7 +83,7 @@ void Metrics::MeasureControl(const DecodedRow& row) {
 // A law may fail on ideal bodies only, for example because two agents are at exactly the same position. The run goes
 // on; only the comparison ends.
 void Metrics::StepIdeal() try {
-  const SuppressedPythonOutput suppressed;
+  const SuppressedLawOutput suppressed;
   ideal_->Step();
 } catch (const std::exception& failure) {
   ideal_failure_ = failure.what();

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "agent/laws/laws.h"
-#include "agent/python/python.h"
+#include "agent/user_code/law_output.h"
 #include "orchestrator/measuring/agreement_meter.h"
 #include "orchestrator/team/team.h"
 #include "orchestrator/theory/contact_watch.h"
@@ -101,7 +101,7 @@ class LoopTeam {
 }  // namespace
 
 LoopFlight FlyLoops(const Experiment& experiment, const LoopError& error) {
-  const SuppressedPythonOutput suppressed;
+  const SuppressedLawOutput suppressed;
   const LawEntry& law = EntryOf(experiment.law);
   const std::vector<int> ids = AgentsWith(law, experiment);
   const std::unique_ptr<LawMeter> meter = law.meter == nullptr ? nullptr : law.meter(experiment, ids);

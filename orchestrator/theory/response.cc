@@ -4,7 +4,7 @@
 #include <exception>
 
 #include "agent/laws/laws.h"
-#include "agent/python/python.h"
+#include "agent/user_code/law_output.h"
 #include "experiment/experiment.h"
 #include "experiment/phase.h"
 #include "orchestrator/measuring/agreement_meter.h"
@@ -73,7 +73,7 @@ void ResponseRecorder::Add(double disagreement_m) {
 
 std::vector<PartResponse> ResponsesOf(const Experiment& experiment, const Prediction& prediction) {
   if (experiment.user_code == UserCode::kNeverRuns && FliesCodeOfUsers(experiment)) return {};
-  const SuppressedPythonOutput suppressed;
+  const SuppressedLawOutput suppressed;
   std::vector<PartResponse> responses;
   const auto add = [&](std::optional<PartResponse> part) {
     if (part) responses.push_back(*std::move(part));

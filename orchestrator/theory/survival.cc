@@ -12,7 +12,7 @@
 #include "agent/laws/laws.h"
 #include "agent/laws/parts/reach.h"
 #include "agent/neighbours.h"
-#include "agent/python/python.h"
+#include "agent/user_code/law_output.h"
 #include "base/ticks.h"
 #include "experiment/graph/robustness.h"
 #include "experiment/live_experiment.h"
@@ -250,7 +250,7 @@ std::vector<Survival> SurvivalsOf(const Experiment& now) {
 SurvivalOfRun SurvivalOf(const Experiment& experiment) {
   SurvivalOfRun survival;
   if (!MayGoWrong(experiment)) return survival;
-  const SuppressedPythonOutput suppressed;
+  const SuppressedLawOutput suppressed;
   Budget budget(kMaxSurvivalWork);
   LiveExperiment live(WithUnion(experiment), &LawTable(), /*checked=*/true);
   std::set<std::int64_t> ticks = TicksOfTheFile(experiment);

@@ -7,7 +7,7 @@
 
 #include "agent/agent.h"
 #include "agent/laws/laws.h"
-#include "agent/python/python.h"
+#include "agent/user_code/law_output.h"
 #include "experiment/live_experiment.h"
 #include "experiment/phase.h"
 #include "orchestrator/team/exchange.h"
@@ -44,7 +44,7 @@ void Keep(std::optional<FirstCommand>& worst, const FirstCommand& first) {
 }
 
 void PredictFirstCommand(const Experiment& experiment, Prediction& prediction) {
-  const SuppressedPythonOutput suppressed;
+  const SuppressedLawOutput suppressed;
   Experiment prompt = experiment;
   prompt.links = {};  // delays and losses only postpone the tick at which agents hear all their neighbours
   const std::vector<Motion> motions = MotionsAtStart(experiment);
@@ -217,7 +217,7 @@ std::string WhySilentLater(const Experiment& start, const Experiment& now, std::
 
 /// Predicts the phases after the first, each from where ideal bodies are by then.
 std::vector<LaterPhase> PredictLater(const Experiment& start) {
-  const SuppressedPythonOutput suppressed;
+  const SuppressedLawOutput suppressed;
   const std::vector<std::int64_t> phases = PhasesOf(start);
   std::vector<LaterPhase> later;
   LiveExperiment live(start, &LawTable(), /*checked=*/true);

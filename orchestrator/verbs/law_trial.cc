@@ -15,6 +15,7 @@
 #include "agent/laws/laws.h"
 #include "agent/python/python.h"
 #include "agent/python/shared_random.h"
+#include "agent/user_code/law_output.h"
 #include "base/after_last.h"
 #include "base/number.h"
 #include "base/utf8.h"
@@ -177,7 +178,7 @@ int FlyTrial(std::string_view descriptor) {
   const std::optional<int> to = NumberFrom<int>(descriptor);
   if (!to) return kExitUsage;
   const std::string text = ReadToEnd(0);
-  const SuppressedPythonOutput suppressed;
+  const SuppressedLawOutput suppressed;
   const Experiment experiment =
       LoadExperiment(Section::FromText(text, "the resolved experiment"), "trial", /*checked=*/true);
   return WriteAll(*to, TrialFlight(experiment).Fly()) ? kExitDone : kExitFailed;

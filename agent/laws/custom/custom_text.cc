@@ -1,6 +1,7 @@
 // What the text of a law in Python must be: it runs, and defines functions that can be called.
 #include "agent/laws/custom/custom.h"
 #include "agent/laws/parts/user_params.h"
+#include "agent/user_code/law_output.h"
 
 namespace mascot {
 namespace {
@@ -80,7 +81,7 @@ void LoadNumPy() {
 }  // namespace
 
 bool TryText(Section& law, CustomParams& params, const LawLimits& limits) {
-  const SuppressedPythonOutput suppressed;
+  const SuppressedLawOutput suppressed;
   const PythonLock lock;
   const std::string key = TextKey(law, kPythonKey);
   const std::string who = "the law in " + params.file;

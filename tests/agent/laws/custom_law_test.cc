@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "agent/agent.h"
-#include "agent/python/python.h"
+#include "agent/user_code/law_output.h"
 #include "base/utf8.h"
 #include "tests/support/scratch.h"
 #include "tests/support/three_agents.h"
@@ -410,7 +410,7 @@ TEST(CustomLaw, PrintsToStandardErrorInWholeLinesAndNotIfMuted) {
   testing::internal::CaptureStdout();
   agent.Want(5, Motion{}, {});
   {
-    const SuppressedPythonOutput suppressed;
+    const SuppressedLawOutput suppressed;
     agent.Want(6, Motion{}, {});
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "at 0.05 s\n");
