@@ -25,6 +25,8 @@ class Agent {
   bool is_lost() const { return config_->faults.is_lost(); }
   /// Whether the law runs code that a user has written.
   bool AsksCodeOfUser() const;
+  /// Returns when the law can be asked at once (Law::AwaitStart).
+  void AwaitLaw() { law_->AwaitStart(); }
   /// Call it when events have changed the experiment: from the next Sense() on, the experiment is `now`. If a fresh
   /// agent has taken this one's place, all that this one remembers is forgotten.
   void Adopt(std::shared_ptr<const Experiment> now);

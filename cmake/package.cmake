@@ -45,7 +45,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_DEPENDS "python3, python3-numpy, libjs-three, libjs-dygraphs")
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_RECOMMENDS "python3-matplotlib, python3-optuna")  # pictures; tune
-set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS "ffmpeg, bash-completion, cmake, g++, libeigen3-dev, python3-mascot, octave-instrument-control")  # films; laws in C++; matlab/
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS "ffmpeg, bash-completion, cmake, g++, libeigen3-dev, octave, octave-instrument-control, python3-mascot")  # films; laws; matlab/
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "teams of MASCOT as environments for learning, in Python
  The module mascot: multi-drone environments in the forms of PettingZoo and

@@ -49,7 +49,8 @@ constexpr auto kControlKeys = Joined(
     std::array{
         key::Integer("rate_hz", 1, 100000, "ticks per simulated second; divides `physics.rate_hz`").Default("100"),
         key::Integer("python_memory_mb", 100, 1'000'000,
-                     "how much memory a process may take while it runs a law in Python; a law that exceeds it fails")
+                     "how much memory a process may take while it runs a law in Python, and an Octave that runs a law; "
+                     "a law that exceeds it fails")
             .Otherwise("2000")},
     kAgentKeys);
 

@@ -168,7 +168,7 @@ struct Experiment {
   std::vector<AgentConfig> agents;
   struct {
     int rate_hz = 100;
-    int python_memory_mb = 2000;  ///< limit on the memory of a process that runs a law in Python
+    int python_memory_mb = 2000;  ///< limit on the memory of a process that runs a law in Python or Octave
   } control;
   /// All edges of all phases of `schedule`: which agent may ever hear which. DDS readers exist for these edges.
   Graph graph{{}};

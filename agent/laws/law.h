@@ -48,6 +48,10 @@ class Law {
   /// about this agent. The law keeps what it remembers. `agent` lives until the next Adopt() has returned. This is for
   /// the laws of the table; laws in shared libraries have Set() (agent/laws/plugin/plugin.h).
   virtual void Adopt(const AgentConfig& /*agent*/) {}
+  /// Returns when the law can be asked at once. Called, for laws of the table, before a run over DDS begins, when the
+  /// laws of all agents of the process have been made; a law that has started another program waits for it here, or in
+  /// the first Want_W(). An exception ends the run.
+  virtual void AwaitStart() {}
 };
 
 }  // namespace mascot

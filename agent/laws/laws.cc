@@ -14,7 +14,7 @@ using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     RendezvousLaw, EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw,
     CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, CoverageLaw,
-    AffineFormationLaw, ResilientLaw, FlockingLaw, AvoidanceLaw, PolicyLaw, ActionsLaw, CustomLaw, PluginLaw;
+    AffineFormationLaw, ResilientLaw, FlockingLaw, AvoidanceLaw, PolicyLaw, ActionsLaw, CustomLaw, OctaveLaw, PluginLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
@@ -23,7 +23,7 @@ std::span<const LawEntry> Laws() {
       AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(),
       BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   CoverageLaw(),       AffineFormationLaw(),
       ResilientLaw(),        FlockingLaw(),       AvoidanceLaw(),        PolicyLaw(),         ActionsLaw(),
-      CustomLaw(),           PluginLaw(),
+      CustomLaw(),           OctaveLaw(),         PluginLaw(),
   };
   return kLaws;
 }

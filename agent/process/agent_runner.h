@@ -26,6 +26,8 @@ class AgentRunner {
   AgentRunner(Domain& domain, const Experiment& experiment, int id, std::function<void()> on_first_answer);
 
   int id() const { return id_; }
+  /// As Agent::AwaitLaw(). To be called before samples arrive.
+  void AwaitLaw() { agent_.AwaitLaw(); }
   /// True when all readers of what this agent writes are matched.
   bool Matched() const;
   bool has_answered() const { return has_answered_; }

@@ -28,6 +28,7 @@ AgentsOnBundles::AgentsOnBundles(Domain& domain, const Experiment& experiment, A
           RedeliveryOfBundles(domain, experiment)) {
   const std::lock_guard lock(mutex_);
   for (int id = agents.first; id <= agents.last; ++id) agents_.push_back(std::make_unique<Agent>(experiment, id));
+  for (const auto& agent : agents_) agent->AwaitLaw();
 }
 
 bool AgentsOnBundles::Matched() const {

@@ -12,6 +12,7 @@ AgentsOnTopics::AgentsOnTopics(Domain& domain, const Experiment& experiment, Age
     : experiment_(experiment) {
   for (int id = agents.first; id <= agents.last; ++id)
     runners_.push_back(std::make_unique<AgentRunner>(domain, experiment, id, on_first_answer));
+  for (const auto& runner : runners_) runner->AwaitLaw();
   ListenToStates(domain);
   ListenToMessages(domain);
   ListenToActions(domain, agents);

@@ -93,6 +93,22 @@ std::vector<Setting> PluginSettings() {
           {"leader", base, base + "leader = 2\n"}};
 }
 
+/// Settings for the law in MATLAB's language; octave_law_test.cc tests the rest.
+std::vector<Setting> OctaveSettings() {
+  const auto law = [](const std::string& gain) {
+    return "octave = '''\nfunction a = control(t, me, neighbours, params)\n  a = -me.velocity;\n  gain = 1.0;\n"
+           "  if isfield(params, 'gain')\n    gain = params.gain;\n  end\n  for j = neighbours\n    a = a + gain * " +
+           gain + " * (j.position - me.position);\n  end\nend\n'''\n";
+  };
+  const auto with_module = [&](const std::string& gain) {
+    return "modules = { 'factor.m' = 'function y = factor(), y = " + gain + "; end' }\n" + law("factor()");
+  };
+  return {{"octave", law("1.0"), law("1.1")},
+          {"modules", with_module("1.0"), with_module("1.1")},
+          {"params", law("1.0"), law("1.0") + "params = { gain = 0.5 }\n"},
+          {"output", law("1.0"), law("1.0") + "output = 'velocity'\n"}};
+}
+
 /// Settings for the law that is a network: the consensus law with one gain or another.
 std::vector<Setting> PolicySettings() {
   const auto law = [](float p_gain) {
@@ -119,6 +135,7 @@ Trial ReadTrial(std::string_view law) {
 
 Trial TrialOf(std::string_view law) {
   if (law == "custom") return {kFiveOnAPath, CustomSettings()};
+  if (law == "octave") return {kFiveOnAPath, OctaveSettings()};
   if (law == "policy") return {kFiveOnAPath, PolicySettings()};
   if (law == "plugin") return {kFiveOnAPath, PluginSettings()};
   return ReadTrial(law);
@@ -152,10 +169,10 @@ TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
       EXPECT_GT(difference, 1e-4) << law.name << " " << setting.parameter;
       tried.push_back(setting.parameter);
     }
-    // These are tested in actions_test.cc, custom_law_test.cc, custom_text_test.cc, policy_test.cc and
-    // plugin_law_test.cc: files, messages, places of errors.
-    const std::vector<std::string_view> elsewhere = {"file",      "message",     "messages",
-                                                     "onnx_file", "python_file", "python_line"};
+    // These are tested in actions_test.cc, custom_law_test.cc, custom_text_test.cc, octave_law_test.cc,
+    // policy_test.cc and plugin_law_test.cc: files, messages, places of errors.
+    const std::vector<std::string_view> elsewhere = {"file",        "message",   "messages",    "octave_file",
+                                                     "octave_line", "onnx_file", "python_file", "python_line"};
     std::vector<std::string> named;
     for (const Key& parameter : law.parameters)
       if (std::ranges::find(elsewhere, parameter.name) == elsewhere.end()) named.emplace_back(parameter.name);
