@@ -38,12 +38,16 @@ class Descriptor {
   throw ConfigError({PlainLine(name) + ": " + why});
 }
 
+[[noreturn]] void RefuseSize(const std::string& name, std::size_t max) {
+  Refuse(name, "is larger than " + std::to_string(max >> 20) + " MiB");
+}
+
 [[noreturn]] void FailToRead(const std::string& name) {
   Refuse(name, std::string("cannot be read: ") + std::strerror(errno));
 }
 
 /// Reads up to the end, waiting for what is still to come.
-std::string ReadAll(int descriptor, const std::string& name) {
+std::string ReadAll(int descriptor, const std::string& name, std::size_t max = kLargestFile) {
   std::string text;
   char buffer[1 << 16];
   for (;;) {
@@ -56,7 +60,7 @@ std::string ReadAll(int descriptor, const std::string& name) {
       FailToRead(name);
     } else if (got > 0) {
       text.append(buffer, static_cast<std::size_t>(got));
-      if (text.size() > kLargestFile) Refuse(name, "is larger than 16 MiB");  // perhaps it grew while we read
+      if (text.size() > max) RefuseSize(name, max);  // perhaps it grew while we read
     }
   }
 }
@@ -92,13 +96,13 @@ std::string ReadInput(const std::string& path) {
   return ReadAll(copy.number(), name);
 }
 
-std::string ReadRegularFile(const std::string& path) {
+std::string ReadRegularFile(const std::string& path, std::size_t max) {
   // Non-blocking: opening a FIFO that has no writer would wait for ever.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   const struct stat status = StatusOf(file.number(), path);
   if (!S_ISREG(status.st_mode)) Refuse(path, "is not a regular file");
-  if (static_cast<std::size_t>(status.st_size) > kLargestFile) Refuse(path, "is larger than 16 MiB");
-  return ReadAll(file.number(), path);
+  if (static_cast<std::size_t>(status.st_size) > max) RefuseSize(path, max);
+  return ReadAll(file.number(), path, max);
 }
 
 }  // namespace mascot

@@ -114,13 +114,17 @@ Section::FileText Section::TextOfFile(std::string_view key, std::string_view tex
 }
 
 Section::FileContents Section::ContentsOfFile(std::string_view key, std::string_view base64_key, std::size_t max) {
+  FileContents contents = ContentsOfFile(key, max);
+  table_->Record(base64_key, StringToml(ToBase64(contents.bytes)));
+  return contents;
+}
+
+Section::FileContents Section::ContentsOfFile(std::string_view key, std::size_t max) {
   const std::filesystem::path file = FileOf(key);
   std::error_code error;
   if (const auto size = std::filesystem::file_size(file, error); !table_->Wrong(key) && !error && size > max)
     Fail(key, fmt::format("expected a file of at most {} bytes, which travels with the experiment, got {}", max, size));
-  const std::string bytes = ReadFileOf(key, file);
-  table_->Record(base64_key, StringToml(ToBase64(bytes)));
-  return {bytes, file.filename().string()};
+  return {ReadFileOf(key, file, std::max(max, kMaxRegularFile)), file.filename().string()};
 }
 
 std::filesystem::path Section::FileOf(std::string_view key) {
@@ -128,10 +132,10 @@ std::filesystem::path Section::FileOf(std::string_view key) {
   return std::filesystem::path(PlaceOfText(key).folder) / path;
 }
 
-std::string Section::ReadFileOf(std::string_view key, const std::filesystem::path& file) {
+std::string Section::ReadFileOf(std::string_view key, const std::filesystem::path& file, std::size_t max) {
   if (table_->Wrong(key)) return "";
   try {
-    return ReadRegularFile(file.string());
+    return ReadRegularFile(file.string(), max);
   } catch (const ConfigError& error) {
     Fail(key, std::string("expected a readable file, got ") + error.what());
     return "";

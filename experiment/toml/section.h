@@ -36,6 +36,10 @@ struct Override {
   bool removes = false;     ///< the key is removed, if it is there; there is no value
 };
 
+inline constexpr std::size_t kMaxRegularFile = std::size_t{16} << 20;  // bytes, unless the caller allows more
+/// The content of a regular file of at most `max` bytes. Throws ConfigError, e.g. "PATH: is a directory".
+std::string ReadRegularFile(const std::string& path, std::size_t max = kMaxRegularFile);
+
 /// One table of a TOML file, read strictly. Each reader checks type and range; a mistake is noted (not thrown) and the
 /// fallback or the nearest legal value is returned, so that one pass finds all mistakes. Every value read, defaults
 /// included, is remembered: Resolved() writes them out as the file that reproduces the run. Copies share their state.
@@ -95,6 +99,8 @@ class Section {
     std::string name;  ///< the file's, without its folders
   };
   FileContents ContentsOfFile(std::string_view key, std::string_view base64_key, std::size_t max);
+  /// As above, but Resolved() has nothing of them: the caller records what it makes of them. `max` may be any size.
+  FileContents ContentsOfFile(std::string_view key, std::size_t max);
   /// The absolute path of the file that `key` names, relative to this document's folder; the file need not exist.
   /// Resolved() has the absolute path. "" after a mistake.
   std::string PathOfFile(std::string_view key);
@@ -163,7 +169,7 @@ class Section {
   /// The path of the file that `key` names, from this document's folder.
   std::filesystem::path FileOf(std::string_view key);
   /// What `file` holds, which `key` names; notes a mistake if it cannot be read.
-  std::string ReadFileOf(std::string_view key, const std::filesystem::path& file);
+  std::string ReadFileOf(std::string_view key, const std::filesystem::path& file, std::size_t max = kMaxRegularFile);
   friend class ValueTables;
   struct Document;
   struct Table;
@@ -174,9 +180,6 @@ class Section {
   std::shared_ptr<Document> document_;
   std::shared_ptr<Table> table_;
 };
-
-/// The content of a regular file of at most 16 MiB. Throws ConfigError, e.g. "PATH: is a directory".
-std::string ReadRegularFile(const std::string& path);
 
 /// The name among `names` that is closest to `word`, if it is close enough for a typing mistake.
 std::optional<std::string> DidYouMean(std::string_view word, std::span<const std::string_view> names);
