@@ -64,10 +64,11 @@ PrivateFolder::~PrivateFolder() {
   fs::remove_all(path_, ignored);
 }
 
-void PrivateFolder::Write(const fs::path& name, std::string_view bytes) const {
+void PrivateFolder::Write(const fs::path& name, std::string_view bytes, bool is_executable) const {
   const fs::path path = path_ / name;
   fs::create_directories(path.parent_path());
-  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR));
+  const mode_t mode = S_IRUSR | (is_executable ? S_IXUSR : 0);
+  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
   if (!file.is_open() || !WriteAll(file.number(), bytes)) throw Failure(path, errno);
 }
 

@@ -22,8 +22,8 @@ class PrivateFolder {
   PrivateFolder& operator=(const PrivateFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Writes a file that is only to be read. `name`: its path from the folder. Throws std::runtime_error.
-  void Write(const std::filesystem::path& name, std::string_view bytes) const;
+  /// Writes a file that is only to be read, or executed. `name`: its path from the folder. Throws std::runtime_error.
+  void Write(const std::filesystem::path& name, std::string_view bytes, bool is_executable = false) const;
 
  private:
   std::filesystem::path path_;

@@ -47,6 +47,9 @@ TEST_F(PrivateFolderTest, HasFilesThatOnlyItsUserReads) {
   EXPECT_EQ(info.st_mode & 0777, 0700U);
   ASSERT_EQ(stat((folder.path() / "deep/er/x").c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777, 0400U);
+  folder.Write("tool", "#!/bin/sh\n", /*is_executable=*/true);
+  ASSERT_EQ(stat((folder.path() / "tool").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0500U);
 }
 
 TEST_F(PrivateFolderTest, GoesWithItsObject) {
