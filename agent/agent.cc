@@ -54,6 +54,7 @@ void Agent::Adopt(std::shared_ptr<const Experiment> now) {
   neighbours_.Adopt(*now);
   safety_.Adopt(*now);
   if (begins) {
+    law_.reset();  // before the next one: a process may be able to have the law only once
     law_ = MakeLaw(*now, id_);
     law_made_for_ = now;
   } else {

@@ -90,6 +90,9 @@ struct LawParams {
   bool sends_messages = false;
   std::size_t action = 0;  ///< how many numbers an action has that somebody outside gives the law; 0: it takes none
   std::string fixed;       ///< why no event can change law.params, as far as is known; empty: one can
+  /// Why no event can change the law.params of `before`, those of the same law up to now, to these; empty: one can.
+  virtual std::string WhyFixed(const LawParams& /*before*/) const { return fixed; }
+  bool once_per_process = false;   ///< a process can have the law for one agent only
   std::vector<std::string> files;  ///< absolute paths of files that the law depends on; their contents are not in here
 };
 

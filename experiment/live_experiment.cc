@@ -345,8 +345,9 @@ void LiveExperiment::CheckParams(const Event& event, const LawsAgain& laws) cons
   if (laws_ == nullptr || std::ranges::none_of(event.set, is_of_params)) return;
   for (const AgentConfig& agent : now_.agents) {
     const bool is_concerned = event.agents.empty() || std::ranges::find(event.agents, agent.id) != event.agents.end();
-    const LawParams& params = *laws.Of(agent).params;
-    if (is_concerned && !params.fixed.empty()) Refuse(event, "law.params: " + params.fixed);
+    if (!is_concerned) continue;
+    const std::string reason = laws.Of(agent).params->WhyFixed(*agent.law.params);
+    if (!reason.empty()) Refuse(event, "law.params: " + reason);
   }
 }
 

@@ -16,6 +16,8 @@ namespace {
 /// A fault for which there are no ideal bodies, in words; empty: there is none.
 std::string FaultOfBodies(const Experiment& now) {
   for (const AgentConfig& agent : now.agents) {
+    if (agent.law.params->once_per_process)
+      return fmt::format("a process can have the law of agent {} only once", agent.id);
     if (agent.faults.is_lost()) return fmt::format("agent {} was lost", agent.id);
     for (const PartFault& part : agent.faults.parts)
       if (part.fault.of == FaultPart::kMotor) return fmt::format("a motor of agent {} failed", agent.id);
@@ -32,7 +34,8 @@ std::int64_t CommandedByAcceleration(const Experiment& experiment) {
 
 Metrics::Metrics(const Experiment& experiment, Crew& crew) : experiment_(experiment) {
   const SuppressedLawOutput suppressed;  // the laws run a second time; discard what they print
-  if (experiment.output.fidelity) ideal_.emplace(experiment, crew);
+  if (experiment.output.fidelity) fault_ = FaultOfBodies(experiment);
+  if (experiment.output.fidelity && fault_.empty()) ideal_.emplace(experiment, crew);
   accelerated_ = CommandedByAcceleration(experiment);
   Take(experiment);
 }

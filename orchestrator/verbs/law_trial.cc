@@ -152,6 +152,8 @@ std::string DifferenceOf(const Experiment& experiment, const TrialReport& a, con
 
 LawTrial TryLaws(const Experiment& experiment) {
   LawTrial trial;
+  const auto is_alone = [](const AgentConfig& agent) { return agent.law.params->once_per_process; };
+  if (std::ranges::count_if(experiment.agents, is_alone) > 1) return trial;  // it flies all agents in one process
   if (!FliesCodeOfUsers(experiment) || experiment.user_code == UserCode::kNeverRuns) return trial;
   const std::vector<std::string> words{(ProgramFolder() / "orchestrator").string(), kTrialFlight};
   AskedProgram first(words, experiment.resolved), second(words, experiment.resolved);
