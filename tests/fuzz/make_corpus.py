@@ -4,12 +4,14 @@ compression and checksums, so that a changed byte reaches what is behind them; o
 
   tests/fuzz/make_corpus.py [FOLDER OF orchestrator]"""
 
+import io
 import pathlib
 import random
 import struct
 import subprocess
 import sys
 import tempfile
+import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 CORPUS = ROOT / "tests/fuzz/corpus"
@@ -283,10 +285,34 @@ def networks():
     }
 
 
+# --- FMUs ---------------------------------------------------------------------------------------------------
+
+
+def fmus():
+    """Descriptions of FMUs, those of the FMUs of tests, and small archives."""
+    sys.path.append(str(ROOT / "tests/fmus"))
+    import pack
+
+    files = {}
+    for version, platform in [(2, "linux64"), (3, "x86_64-linux")]:
+        files[f"description_{version}"] = pack.description(version).encode()
+        archive = io.BytesIO()
+        with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
+            for name, text in [("modelDescription.xml", f'<fmiModelDescription fmiVersion="{version}.0"/>'),
+                               (f"binaries/{platform}/law.so", "x" * 50), ("resources/a", "")]:
+                entry = zipfile.ZipInfo(name)  # of 1980, so that the same files give the same bytes
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                entry.external_attr = (0o100755 if name.endswith(".so") else 0o100644) << 16
+                packed.writestr(entry, text)
+        files[f"archive_{version}"] = archive.getvalue()
+    return files
+
+
 def main():
     programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release")
     for name, files in [("samples", samples()), ("recording", recordings(programs)), ("protocols", protocols()),
-                        ("viewers", viewers()), ("serve", served()), ("network", networks())]:
+                        ("viewers", viewers()), ("serve", served()), ("network", networks()),
+                        ("fmu", fmus())]:
         (CORPUS / name).mkdir(parents=True, exist_ok=True)
         for file, data in files.items():
             (CORPUS / name / file).write_bytes(data)
