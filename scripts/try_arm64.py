@@ -18,7 +18,7 @@ import tomllib
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ORCHESTRATOR = ROOT / "build/release/orchestrator"
 LIMIT_S = 20  # of simulated time, more if events come later
-OF_USERS = re.compile(r'^name\s*=\s*"(custom|octave|plugin)"', re.MULTILINE)  # laws whose bits are not promised
+OF_USERS = re.compile(r'^name\s*=\s*"(custom|octave|plugin|fmu)"', re.MULTILINE)  # laws whose bits are not promised
 WAIT_S = 600  # for all agents to start, or one to decide: qemu computes about ten times slower than the processor
 ON_ARM64 = f"'{ROOT / 'scripts/arm64'}' run '{ROOT / 'build/arm64/agent'}'"
 HAND = re.compile(r"^waiting for: agent (.*)\n", re.MULTILINE)

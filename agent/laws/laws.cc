@@ -14,16 +14,40 @@ using Row = LawEntry();
 Row ConsensusLaw, WaypointLaw, MinmaxLaw, FormationLaw, VelocityConsensusLaw, FiniteTimeLaw, PrescribedTimeLaw,
     RendezvousLaw, EventTriggeredLaw, ContainmentLaw, AverageTrackingLaw, TrajectoryLaw, GradientTrackingLaw,
     CyclicPursuitLaw, DistanceFormationLaw, BearingFormationLaw, PlatoonLaw, PursuitEvasionLaw, CoverageLaw,
-    AffineFormationLaw, ResilientLaw, FlockingLaw, AvoidanceLaw, PolicyLaw, ActionsLaw, CustomLaw, OctaveLaw, PluginLaw;
+    AffineFormationLaw, ResilientLaw, FlockingLaw, AvoidanceLaw, PolicyLaw, ActionsLaw, CustomLaw, OctaveLaw, PluginLaw,
+    FmuLaw;
 
 std::span<const LawEntry> Laws() {
   static const LawEntry kLaws[] = {
-      ConsensusLaw(),        WaypointLaw(),       MinmaxLaw(),           FormationLaw(),      VelocityConsensusLaw(),
-      FiniteTimeLaw(),       PrescribedTimeLaw(), RendezvousLaw(),       EventTriggeredLaw(), ContainmentLaw(),
-      AverageTrackingLaw(),  TrajectoryLaw(),     GradientTrackingLaw(), CyclicPursuitLaw(),  DistanceFormationLaw(),
-      BearingFormationLaw(), PlatoonLaw(),        PursuitEvasionLaw(),   CoverageLaw(),       AffineFormationLaw(),
-      ResilientLaw(),        FlockingLaw(),       AvoidanceLaw(),        PolicyLaw(),         ActionsLaw(),
-      CustomLaw(),           OctaveLaw(),         PluginLaw(),
+      ConsensusLaw(),
+      WaypointLaw(),
+      MinmaxLaw(),
+      FormationLaw(),
+      VelocityConsensusLaw(),
+      FiniteTimeLaw(),
+      PrescribedTimeLaw(),
+      RendezvousLaw(),
+      EventTriggeredLaw(),
+      ContainmentLaw(),
+      AverageTrackingLaw(),
+      TrajectoryLaw(),
+      GradientTrackingLaw(),
+      CyclicPursuitLaw(),
+      DistanceFormationLaw(),
+      BearingFormationLaw(),
+      PlatoonLaw(),
+      PursuitEvasionLaw(),
+      CoverageLaw(),
+      AffineFormationLaw(),
+      ResilientLaw(),
+      FlockingLaw(),
+      AvoidanceLaw(),
+      PolicyLaw(),
+      ActionsLaw(),
+      CustomLaw(),
+      OctaveLaw(),
+      PluginLaw(),
+      FmuLaw(),
   };
   return kLaws;
 }

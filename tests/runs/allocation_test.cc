@@ -156,6 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
               "[physics]\nobstacles = [{ shape = 'box', position_m = [0, 0, 30], size_m = [1, 1, 1] }]\n"
               "[sensors]\nrange_m = 50.0\n"
               "[law]\nname = 'avoidance'\ngoals_m = [[9, 9, 1], [-9, 9, 1], [9, -9, 1], [-9, -9, 1]]\n"},
+        Setup{"an FMU", "[law]\nname = 'fmu'\nfile = '" MASCOT_BINARY_DIR "/tests/fmus/law_fmi3.fmu'\n"},
         Setup{"a policy",
               "[graph]\ntopology = 'complete'\n"
               "[law]\nname = 'policy'\nfile = '" MASCOT_SOURCE_DIR "/configs/policy.onnx'\n"},

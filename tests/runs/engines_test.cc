@@ -252,6 +252,35 @@ TEST(PluginLaw, GivesTheSameBytesInBothEnginesMessagesIncluded) {
   EXPECT_FALSE(muffled.File("states.npz") == inprocess.File("states.npz")) << "what they say matters";
 }
 
+/// Three agents with one of the FMUs of tests/fmus.
+std::string Fmus(const std::string& name) {
+  return "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = \"double_integrator\"\n[graph]\ntopology = \"ring\"\n"
+         "[link]\nloss = 0.2\n[law]\nname = \"fmu\"\nfile = \"" MASCOT_BINARY_DIR "/tests/fmus/" +
+         name + "\"\n";
+}
+
+TEST(FmuLaw, GivesTheSameBytesInBothEngines) {
+  for (const std::string fmi : {"law_fmi2", "law_fmi3"}) {
+    ScratchFolder folder;
+    WriteFile(folder.File("fmus.toml"), Fmus(fmi + ".fmu"));
+    Up dds(folder, "dds", folder.File("fmus.toml"), {});
+    ASSERT_EQ(dds.Wait(), 0) << dds.err();
+    Up inprocess(folder, "inprocess", folder.File("fmus.toml"), {"--engine", "inprocess"});
+    ASSERT_EQ(inprocess.Wait(), 0) << inprocess.err();
+    ExpectSameBytes(dds, inprocess);
+  }
+}
+
+TEST(FmuLaw, ThatAProcessCanHaveOnceIsFlownInAProcessForEachAgent) {
+  ScratchFolder folder;
+  WriteFile(folder.File("once.toml"), Fmus("law_once.fmu"));
+  Up dds(folder, "dds", folder.File("once.toml"), {});
+  EXPECT_EQ(dds.Wait(), 0) << dds.err();
+  Up inprocess(folder, "inprocess", folder.File("once.toml"), {"--engine", "inprocess"});
+  EXPECT_EQ(inprocess.Wait(), 1);
+  EXPECT_THAT(inprocess.err(), HasSubstr("fly the experiment over DDS, with a process for each agent"));
+}
+
 TEST(PluginLaw, ThatFailsInFlightEndsTheRunInBothEngines) {
   ScratchFolder folder;
   const auto fly = [&](const std::string& engine, const std::string& does) {

@@ -1,4 +1,5 @@
 // The table of laws: every law is in it with its keys, each key does something, and the resolved file keeps it.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <toml++/toml.h>
 
@@ -119,6 +120,19 @@ std::vector<Setting> PolicySettings() {
   return {{"onnx_base64", law(0.5), law(0.25)}, {"output", law(0.5), law(0.5) + "output = 'velocity'\n"}};
 }
 
+/// Settings for the law that is an FMU, with those of tests/fmus.
+std::vector<Setting> FmuSettings() {
+  const auto fmu = [](int version) {
+    const std::string file = fmt::format("{}/tests/fmus/law_fmi{}.fmu", MASCOT_BINARY_DIR, version);
+    return "fmu_base64 = '" + ToBase64(ReadFile(file)) + "'\n";
+  };
+  const std::string base = fmu(2), gain = "params = { p_gain = 0.5 }\n";
+  return {{"fmu_base64", base + "params = { beta = 2.0 }\n", fmu(3) + "params = { beta = 1.0 }\n"},
+          {"params", base, base + gain},
+          {"output", base, base + "output = 'velocity'\n"},
+          {"fmu", base, base + "fmu = { inputs = { 'v[1]' = 'p[2]' } }\n"}};
+}
+
 /// Reads tests/law_settings/LAW.toml. Each of its [keys] has the lines of [law] that change it, added to `base`, or two
 /// sets of lines that differ in it. `experiment`: another team than five on a path.
 Trial ReadTrial(std::string_view law) {
@@ -136,6 +150,7 @@ Trial ReadTrial(std::string_view law) {
 Trial TrialOf(std::string_view law) {
   if (law == "custom") return {kFiveOnAPath, CustomSettings()};
   if (law == "octave") return {kFiveOnAPath, OctaveSettings()};
+  if (law == "fmu") return {kFiveOnAPath, FmuSettings()};
   if (law == "policy") return {kFiveOnAPath, PolicySettings()};
   if (law == "plugin") return {kFiveOnAPath, PluginSettings()};
   return ReadTrial(law);
@@ -169,10 +184,11 @@ TEST(LawTable, NamesOnlyParametersWhoseChangeChangesTheResultAndAllOfThem) {
       EXPECT_GT(difference, 1e-4) << law.name << " " << setting.parameter;
       tried.push_back(setting.parameter);
     }
-    // These are tested in actions_test.cc, custom_law_test.cc, custom_text_test.cc, octave_law_test.cc,
+    // These are tested in actions_test.cc, custom_law_test.cc, custom_text_test.cc, fmu_test.cc, octave_law_test.cc,
     // policy_test.cc and plugin_law_test.cc: files, messages, places of errors.
-    const std::vector<std::string_view> elsewhere = {"file",        "message",   "messages",    "octave_file",
-                                                     "octave_line", "onnx_file", "python_file", "python_line"};
+    const std::vector<std::string_view> elsewhere = {"file",      "fmu_file",    "message",
+                                                     "messages",  "octave_file", "octave_line",
+                                                     "onnx_file", "python_file", "python_line"};
     std::vector<std::string> named;
     for (const Key& parameter : law.parameters)
       if (std::ranges::find(elsewhere, parameter.name) == elsewhere.end()) named.emplace_back(parameter.name);

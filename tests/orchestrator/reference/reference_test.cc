@@ -36,10 +36,11 @@ std::vector<fs::path> TomlFiles(const fs::path& folder, const std::vector<std::s
   return files;
 }
 
-/// Files that together contain every key. The file for a law in C++ is in the build folder, next to its library.
+/// Files that together contain every key. Those for a law in C++ and for FMUs are in the build folder, next to these.
 std::vector<fs::path> GoodConfigs() {
   std::vector<fs::path> files = TomlFiles(kSource / "tests/good_configs");
-  files.push_back(MASCOT_BINARY_DIR "/tests/plugins/plugin.toml");
+  for (const char* const built : {"plugins/plugin.toml", "fmus/fmu.toml", "fmus/law_fmi3.toml"})
+    files.push_back(fs::path(MASCOT_BINARY_DIR "/tests") / built);
   return files;
 }
 
@@ -97,7 +98,7 @@ TEST(LawPage, HasASectionOfEachLawAndItsPicture) {
     EXPECT_THAT(ReadFile(kPictures / (name + ".png")), testing::StartsWith("\x89PNG")) << name;
     EXPECT_LT(fs::file_size(kPictures / (name + ".png")), 60'000) << name;
   }
-  EXPECT_THAT(not_shown, testing::ElementsAre("actions", "plugin"))
+  EXPECT_THAT(not_shown, testing::ElementsAre("actions", "plugin", "fmu"))
       << "experiments with libraries, and for programs that step them, are not shipped";
 }
 
