@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +15,7 @@
 #include "agent/laws/fmu/fmu_law.h"
 #include "agent/laws/parts/row_parts.h"
 #include "agent/user_code/law_at_work.h"
+#include "agent/user_code/law_output.h"
 #include "base/base64.h"
 #include "base/utf8.h"
 #include "experiment/processes.h"
@@ -52,7 +52,8 @@ LawLimits LimitsOfFmus(const Experiment& experiment) {
 
 /// Takes the words of an FMU to where laws print.
 FmuLog LogOf(const std::string& who) {
-  return [who](const std::string& line) { std::cerr << who << ": " << line << std::endl; };
+  const auto output = std::make_shared<LawOutput>(LawOutput::Kind::kUsual);
+  return [who, output](const std::string& line) { output->Add(who + ": " + line + "\n"); };
 }
 
 // --- the law -------------------------------------------------------------------------------------------------
