@@ -3,6 +3,23 @@
 namespace mascot {
 namespace {
 
+/// Units as names end in them; longer endings first.
+constexpr NameAndUnit kEndings[] = {
+    {"_m_per_s2", "m/s^2"},
+    {"_rad_per_s", "rad/s"},
+    {"_m2_per_s3", "m^2/s^3"},
+    {"_m_per_s", "m/s"},
+    {"_per_s", "1/s"},
+    {"_rad", "rad"},
+    {"_deg", "deg"},
+    {"_hz", "Hz"},
+    {"_kg", "kg"},
+    {"_N", "N"},
+    {"_m2", "m^2"},
+    {"_m", "m"},
+    {"_s", "s"},
+};
+
 std::string ValueText(ValueKind kind, const Key& key) {
   std::string names;
   switch (kind) {
@@ -42,6 +59,14 @@ std::string ValueText(ValueKind kind, const Key& key) {
 }
 
 }  // namespace
+
+NameAndUnit SplitUnit(std::string_view name) {
+  for (const NameAndUnit& ending : kEndings)
+    if (name.ends_with(ending.name)) return {name.substr(0, name.size() - ending.name.size()), ending.unit};
+  return {name, ""};
+}
+
+std::string_view UnitOf(const Key& key) { return key.unit.empty() ? SplitUnit(key.name).unit : key.unit; }
 
 std::string ValueText(const Key& key) {
   std::string text = ValueText(key.kind, key);

@@ -78,6 +78,15 @@ struct Key {
 /// The legal values of a key as text: "[0, 1000], 1/s^2", "ring | path".
 std::string ValueText(const Key& key);
 
+/// A name as what is before its unit, and the unit in which it ends: "headway_s" is "headway", "s". Without one: the
+/// name, "".
+struct NameAndUnit {
+  std::string_view name, unit;
+};
+NameAndUnit SplitUnit(std::string_view name);
+/// The unit of a key's numbers, "m/s^2": that of its row, or else of its name; "": it has none.
+std::string_view UnitOf(const Key& key);
+
 /// Rows of tables of keys: key::Number("loss", {0, 1}, "probability that a sample is lost").Default("0.0").
 namespace key {
 

@@ -47,7 +47,7 @@ const std::vector<RequestKind>& RequestKinds() {
       {"set", true, {"set", "agents"}},
       {"goto", true, {"agent", "position_m"}},
       {"event", true, {"event"}},
-      {"snapshot", false, {"form"}},
+      {"snapshot", false, {"form", "snapshot"}},
       {"restore", true, {"snapshot", "text"}},
       {"forget", false, {"snapshot"}},
       {"close", false},
@@ -230,7 +230,7 @@ Json TeamService::Hello() const {
   for (const ShownKey& key : ShownKeysOf(experiment))
     keys.push_back({{"key", key.name},
                     {"value", JsonOrNull<Json>(key.value)},
-                    {"unit", key.row.unit},
+                    {"unit", std::string(UnitOf(key.row))},
                     {"meaning", std::string(key.row.meaning)}});
   for (const Figure& figure : FigureTable())
     figures.push_back({{"name", figure.name}, {"unit", figure.unit}, {"meaning", figure.description}});
@@ -388,6 +388,11 @@ Json TeamService::Take(const Json& event) {
 
 Json TeamService::Save(const Json& request) {
   const std::string form = request.value("form", Json("number")).is_string() ? request.value("form", "number") : "";
+  if (request.contains("snapshot")) {
+    if (form != "text") throw std::invalid_argument("a snapshot that is kept is given as \"form\": \"text\"");
+    const ServedSnapshot& kept = SnapshotOf(request)->second;
+    return {{"tick", kept.flown.tick}, {"text", TextOf(kept)}};
+  }
   if (form == "text") return {{"tick", team_->tick()}, {"text", TextOf({start_, team_->Save()})}};
   if (form != "number") throw std::invalid_argument("expected \"number\" or \"text\" as \"form\"");
   if (snapshots_.size() == kMostSnapshots)

@@ -4,38 +4,17 @@
 #include <span>
 
 #include "agent/laws/laws.h"
+#include "experiment/toml/key.h"
 
 namespace mascot {
 namespace {
 
-/// Units as names end in them; longer endings first.
-struct Ending {
-  std::string_view ending, unit;
-};
-constexpr Ending kEndings[] = {
-    {"_m_per_s2", "m/s²"}, {"_rad_per_s", "rad/s"}, {"_m2_per_s3", "m²/s³"},
-    {"_m_per_s", "m/s"},   {"_per_s", "1/s"},       {"_rad", "rad"},
-    {"_deg", "°"},         {"_hz", "Hz"},           {"_kg", "kg"},
-    {"_N", "N"},           {"_m2", "m²"},           {"_m", "m"},
-    {"_s", "s"},
-};
 /// Units of columns whose names do not end in them.
-constexpr Ending kUnits[] = {{"control.effort", "m²/s³"}, {"links.bytes", "B"}};
+constexpr NameAndUnit kUnits[] = {{"control.effort", "m^2/s^3"}, {"links.bytes", "B"}};
 
-struct Named {
-  std::string name;  ///< without its unit
-  std::string_view unit;
-};
-
-Named SplitUnit(std::string_view name) {
-  for (const Ending& ending : kEndings)
-    if (name.ends_with(ending.ending))
-      return {std::string(name.substr(0, name.size() - ending.ending.size())), ending.unit};
-  return {std::string(name), {}};
-}
-
-/// "1/s^2" as "1/s²".
-std::string Superscript(std::string_view unit) {
+/// As pictures show it: "1/s^2" as "1/s²", "deg" as "°".
+std::string Symbol(std::string_view unit) {
+  if (unit == "deg") return "°";
   std::string text(unit);
   for (const auto& [caret, raised] : {std::pair("^2", "²"), std::pair("^3", "³")})
     for (auto place = text.find(caret); place != text.npos; place = text.find(caret)) text.replace(place, 2, raised);
@@ -43,7 +22,7 @@ std::string Superscript(std::string_view unit) {
 }
 
 std::string WithUnit(std::string text, std::string_view unit) {
-  return unit.empty() ? text : text.append(" (").append(Superscript(unit)).append(")");
+  return unit.empty() ? text : text.append(" (").append(Symbol(unit)).append(")");
 }
 
 /// The units of the rows of a dotted key, one for each law that gives it another.
@@ -80,28 +59,29 @@ std::string LabelOfColumn(std::string_view column) {
   for (const std::string_view end : {".x", ".y", ".z"})
     if (rest.ends_with(end)) axis = end.substr(1);
   if (!axis.empty()) rest.remove_suffix(2);
-  Named named = SplitUnit(rest);
-  for (const Ending& unit : kUnits)
-    if (column == unit.ending) named.unit = unit.unit;
+  NameAndUnit named = SplitUnit(rest);
+  for (const NameAndUnit& known : kUnits)
+    if (column == known.name) named.unit = known.unit;
+  std::string words(named.name);
   std::replace_if(
-      named.name.begin(), named.name.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
-  if (!axis.empty()) named.name.append(" ").append(axis);
-  return WithUnit(prefix.empty() ? named.name : std::string(prefix) + ": " + named.name, named.unit);
+      words.begin(), words.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
+  if (!axis.empty()) words.append(" ").append(axis);
+  return WithUnit(prefix.empty() ? words : std::string(prefix) + ": " + words, named.unit);
 }
 
 std::string LabelOfMetric(const PythonMetric& metric) {
   if (metric.unit.empty()) return LabelOfColumn(metric.name);
-  std::string words = SplitUnit(metric.name).name;
+  std::string words(SplitUnit(metric.name).name);
   std::ranges::replace(words, '_', ' ');
   return WithUnit(words, metric.unit);
 }
 
 std::string LabelOfKey(std::string_view key, const std::vector<std::string>& laws) {
-  const Named named = SplitUnit(key);
+  const NameAndUnit named = SplitUnit(key);
   std::string units;
   for (const std::string_view unit : UnitsOf(key, ExperimentKeys(), false, laws))
     units.append(units.empty() ? "" : " or ").append(unit);
-  return WithUnit(named.name, units.empty() ? named.unit : units);
+  return WithUnit(std::string(named.name), units.empty() ? named.unit : units);
 }
 
 }  // namespace mascot
