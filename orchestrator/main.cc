@@ -37,6 +37,7 @@ constexpr VerbEntry kVerbs[] = {
     {"plot", "draw the pictures of a run again", SetUpPlot},
     {"view", "play a recording on the page of a run", SetUpView},
     {"serve", "let another program step a team: MATLAB, Simulink, or any that speaks JSON", SetUpServe},
+    {"fmu", "make an FMU of a team, which tools that know FMI 2 or 3 step", SetUpFmu},
     {"sweep", "run an experiment over values of its keys and seeds: a table, a picture", SetUpSweep},
     {"tune", "search for the values of keys that make a figure smallest or largest", SetUpTune},
     {"compare", "the summaries of several runs side by side", SetUpCompare},

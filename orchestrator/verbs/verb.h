@@ -48,6 +48,7 @@ std::function<int()> SetUpSweep(CLI::App& command);      // sweep.cc
 std::function<int()> SetUpTune(CLI::App& command);       // tune.cc
 std::function<int()> SetUpView(CLI::App& command);       // view.cc
 std::function<int()> SetUpServe(CLI::App& command);      // serve.cc
+std::function<int()> SetUpFmu(CLI::App& command);        // fmu.cc
 std::function<int()> SetUpHost(CLI::App& command);       // host.cc
 
 }  // namespace mascot

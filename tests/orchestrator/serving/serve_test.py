@@ -160,7 +160,8 @@ class Steps(Served):
             about = client.about
         self.assertEqual((about["protocol"], about["agents"], about["ticks"], about["engine"]), (1, 3, 50, "inprocess"))
         self.assertEqual(about["ports"], [{"agent": 2, "numbers": 3, "wants": "acceleration", "unit": "m/s^2"}])
-        self.assertIn("law.p_gain", [key["key"] for key in about["keys"]])
+        units = {key["key"]: key["unit"] for key in about["keys"]}
+        self.assertEqual((units["law.p_gain"], units["control.max_speed_m_per_s"], units["link.loss"]), ("1/s^2", "m/s", ""))
         self.assertEqual([figure["name"] for figure in about["figures"]], ["disagreement_m", "separation_m"])
 
     def test_state_is_that_of_the_file_at_first(self):
@@ -244,6 +245,9 @@ class Steps(Served):
             ahead = client.ask("step", actions=[0, 1, 0], ticks=7)
             self.assertEqual(client.ask("restore", snapshot=number)["tick"], 7)
             again = client.ask("step", actions=[0, 1, 0], ticks=7)
+            self.assertEqual(client.ask("snapshot", form="text", snapshot=number)["text"], text)
+            self.assertEqual(client.ask("snapshot", snapshot=number)["error"],
+                             'a snapshot that is kept is given as "form": "text"')
             self.assertEqual(client.ask("forget", snapshot=number), {"answer": "forget"})
             self.assertEqual(client.ask("restore", snapshot=number)["error"], f"there is no snapshot {number}")
         self.assertEqual(again, ahead)
