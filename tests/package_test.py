@@ -309,7 +309,7 @@ def packaged_files():
     words = " ".join(re.findall(r"install\((?:FILES|PROGRAMS|DIRECTORY) ([^)]*?)\s+DESTINATION",
                                 "".join(maker.read_text() for maker in makers))).split()
     named = [ROOT / word for word in words if "$" not in word]
-    programs = [BUILD / name for name in ("orchestrator", "agent", "physics_server")]
+    programs = [BUILD / name for name in ("orchestrator", "agent", "physics_server", "team_fmu.so")]
     return [file for path in (*makers, *programs, BUILD / "man", *named) for file in files_in(path)]
 
 
@@ -370,6 +370,8 @@ class Package(unittest.TestCase):
                 there("usr/share/mascot/page", tree("orchestrator/live/page", "*.*")),
                 there("usr/share/mascot/idl", ["mascot.idl", "fastdds.xml", "qos.xml"]),
                 there("usr/share/mascot/matlab", tree("matlab", "*.m")),
+                there("usr/lib/mascot", ["team_fmu.so"]),
+                there("usr/share/mascot", ["team_fmu.c"]),
                 there("usr/share/mascot_msgs", ["package.xml", "CMakeLists.txt", *tree("idl/mascot_msgs", "*.msg")]),
                 there("usr/share/man/man1", (path.name for path in (BUILD / "man").glob("*"))),
                 there("usr/share/doc/mascot", ["README.md", "CHANGELOG.md", "copyright", "configs"]),

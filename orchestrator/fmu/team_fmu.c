@@ -1244,11 +1244,27 @@ static int SendKeys(Instance* instance) {
   return status;
 }
 
-/* Makes sure that there is a server, and that it has the team of this FMU. */
+/* A started server ends by itself if no client comes for long, as while a tool waits in its initialization. */
+static void ForgetEndedServer(Instance* instance) {
+#if defined(STARTS_SERVERS)
+  int status;
+  if (instance->child == 0) return;
+  Drain(instance);
+  if (instance->said.at == NULL || strstr(instance->said.at, "{\"address\": ") == NULL) return; /* it says why */
+  if (waitpid((pid_t)instance->child, &status, WNOHANG) != (pid_t)instance->child) return;
+  instance->child = 0;
+  EndServer(instance);
+#else
+  (void)instance;
+#endif
+}
+
+/* Makes sure that there is a server, which has been greeted. */
 static int Reach(Instance* instance) {
   Text address = {NULL, 0, 0, false};
   int status;
   if (instance->socket != NO_SOCKET) return OK;
+  ForgetEndedServer(instance);
   AddWords(&address, ValueOf(instance, ROLE_ADDRESS)->text);
   status = StartServer(instance);
   if (status == OK && address.size == 0) status = AwaitAddress(instance, &address);

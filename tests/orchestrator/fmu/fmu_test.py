@@ -555,6 +555,17 @@ class Servers(Made):
                     self.refused(f"fmi{fmu.version}Set{team.TYPES['Real'][0]}: timeout_s: expected a number in (0, 86400], "
                                  "got 0", team.set, {"timeout_s": 0.0})
 
+    def test_that_end_before_anything_is_asked_are_started_again(self):
+        for fmu in self.both("--set", "run.start_timeout_s=1"):
+            with fmu.instance() as team:
+                team.enter()
+                [child] = children()
+                handle = os.pidfd_open(int(child))
+                self.assertTrue(select.select([handle], [], [], LIMIT_S)[0])  # it waits for a client for 2 s
+                os.close(handle)
+                team.call("ExitInitializationMode")
+                self.assertFalse(team.step(0.1))
+
     def test_that_are_killed_end_the_fmu_with_words(self):
         for fmu in self.both():
             with fmu.instance() as team:
