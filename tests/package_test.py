@@ -366,7 +366,7 @@ class Package(unittest.TestCase):
         tree = lambda start, pattern: [path.relative_to(ROOT / start).as_posix() for path in (ROOT / start).rglob(pattern)]
         for expected in [
                 there("usr/bin", ["orchestrator", "agent", "physics_server"]),
-                there("usr/share/mascot/configs", [*tree("configs", "*.toml"), *tree("configs", "*.onnx")]),
+                there("usr/share/mascot/configs", [*tree("configs", "*.toml"), *tree("configs", "*.onnx"), *tree("configs", "*.m")]),
                 there("usr/share/mascot/page", tree("orchestrator/live/page", "*.*")),
                 there("usr/share/mascot/idl", ["mascot.idl", "fastdds.xml", "qos.xml"]),
                 there("usr/share/mascot/matlab", tree("matlab", "*.m")),
