@@ -128,6 +128,20 @@ class Trajectories(Made):
                 self.assertAlmostEqual(team.time, ticks / 100, delta=1e-9)
                 team.call("Terminate")
 
+    def test_over_dds_too(self):
+        flown = self.up(self.team)
+        for fmu in self.both():
+            with fmu.instance() as team:
+                team.set({"engine": "dds"})
+                team.start()
+                for tick in range(20):
+                    if tick == 10:
+                        kept = team.state()
+                    self.assertTrue(numpy.array_equal(rows(team, 3)[0], flown["position"][tick]), tick)
+                    team.step(0.01)
+                team.restore(kept)
+                self.assertTrue(numpy.array_equal(rows(team, 3)[0], flown["position"][10]))
+
     def test_attitude_and_angular_velocity_too(self):
         self.team.write_text(TEAM.replace("double_integrator", "quadrotor"))
         flown = self.up(self.team)
