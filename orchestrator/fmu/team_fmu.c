@@ -535,8 +535,9 @@ typedef struct {
   char* name;
   void* environment;
   Logger2 logger2;
-  Logger3 logger3; /* null: the instance is of FMI 2 */
-  int log;         /* categories */
+  Logger3 logger3;       /* null: the instance is of FMI 2 */
+  int log;               /* categories */
+  bool may_return_early; /* the tool lets a step end before its time */
   Table table;
   char* resources;
 
@@ -2293,8 +2294,9 @@ EXPORTED void* FMI3(InstantiateCoSimulation)(const char* name, const char* token
                                              const uint32_t intermediate[], size_t intermediate_count,
                                              void* environment, Logger3 logger, void (*intermediate_update)(void)) {
   Instance* instance = New3(logging_on, environment, logger);
-  (void)visible, (void)early_return_allowed, (void)intermediate, (void)intermediate_update;
+  (void)visible, (void)intermediate, (void)intermediate_update;
   if (instance == NULL) return NULL;
+  instance->may_return_early = early_return_allowed;
   if (event_mode_used) return Refuse3(instance, "fmi3InstantiateCoSimulation: this FMU has no event mode");
   if (intermediate_count > 0)
     return Refuse3(instance, "fmi3InstantiateCoSimulation: this FMU has no intermediate variables");
@@ -2527,8 +2529,10 @@ EXPORTED int FMI3(DoStep)(void* component, double from, double step, bool no_set
   if (early_return != NULL) *early_return = false;
   if (terminate != NULL) *terminate = false;
   status = DoStep(instance, from, step, &ends);
-  if (terminate != NULL) *terminate = ends;
-  if (last_time != NULL) *last_time = instance->at.time;
   if (status == OK && ends) instance->at.mode = STOPPED;
+  if (ends && !instance->may_return_early) instance->at.time = from + step; /* the outputs are held until then */
+  if (terminate != NULL) *terminate = ends;
+  if (early_return != NULL) *early_return = ends && instance->may_return_early;
+  if (last_time != NULL) *last_time = instance->at.time;
   return status;
 }

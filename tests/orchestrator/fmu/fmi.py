@@ -69,8 +69,9 @@ class Instance:
     LOGGER = None
     STATE = "FMUstate"
 
-    def __init__(self, fmu, name="team", token=None, resources=None, logging=True):
+    def __init__(self, fmu, name="team", token=None, resources=None, logging=True, early_return=True):
         self.fmu = fmu
+        self.early_return = early_return  # of FMI 3: whether a step may end before its time
         self.messages = []  # status, category, text
         self.component = None
         self.logger = self.LOGGER(self._log)
@@ -218,7 +219,7 @@ class Instance3(Instance):
         function.restype = c_void_p
         location = f"{self.fmu.folder / 'resources'}/" if resources is None else resources
         return function(name.encode(), token.encode(), location.encode(), c_bool(False), c_bool(logging), c_bool(False),
-                        c_bool(False), None, c_size_t(0), None, self.logger, None)
+                        c_bool(self.early_return), None, c_size_t(0), None, self.logger, None)
 
     def enter(self, start_s=0.0):
         self.call("EnterInitializationMode", c_bool(False), c_double(0), c_double(start_s), c_bool(False), c_double(0))
@@ -228,5 +229,6 @@ class Instance3(Instance):
         event, ended, early, last_s = c_bool(), c_bool(), c_bool(), c_double()
         self.call("DoStep", c_double(self.time), c_double(step_s), c_bool(False), byref(event), byref(ended), byref(early),
                   byref(last_s))
+        assert early.value or last_s.value == self.time + step_s, (early.value, last_s.value)
         self.time = last_s.value
         return ended.value

@@ -167,6 +167,14 @@ class Trajectories(Made):
                     self.assertTrue(numpy.array_equal(rows(team, 3)[0], flown[tick]))
                 self.assertTrue(team.step(0.01))
 
+    def test_end_at_the_last_tick_or_where_a_tool_must_go_on_to(self):
+        for fmu in self.both():
+            for early_return, end_s in ((True, 0.5), (False, 0.5 if fmu.version == 2 else 0.7)):
+                with fmu.instance(early_return=early_return) as team:
+                    team.start()
+                    self.assertTrue(team.step(0.7))
+                    self.assertEqual((team.time, team.get("time"), team.get("tick")), (end_s, [end_s], [50]))
+
     def test_begin_at_the_start_time_of_the_tool(self):
         for fmu in self.both():
             with fmu.instance() as team:
