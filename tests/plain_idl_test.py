@@ -90,6 +90,11 @@ class Profiles(unittest.TestCase):
             named = re.search(r'latest" for (\S+) and (\S+), whose', words).groups()
             self.assertEqual({name.rpartition("/")[2] for name in named}, latest)
 
+    def test_a_reader_that_is_killed_leaves_no_shared_memory(self):
+        readers = list(xml.parse(PROFILES / "fastdds.xml").iter(FASTDDS + "data_reader"))
+        self.assertEqual([reader.find(f".//{FASTDDS}data_sharing/{FASTDDS}kind").text for reader in readers],
+                         ["OFF"] * len(readers))
+
 
 class Page(unittest.TestCase):
     def test_its_topics_are_those_of_the_table(self):
