@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "orchestrator/formats/bytes.h"
+#include "orchestrator/live/server/foxglove_bytes.h"
 #include "orchestrator/serving/binary_form.h"
 #include "orchestrator/serving/conversation.h"
 #include "orchestrator/serving/team_service.h"
