@@ -245,9 +245,9 @@ static void AddFromJson(Text* text, Piece json) {
   for (++at, --end; at < end; ++at) {
     static const char names[] = "bfnrt", meanings[] = "\b\f\n\r\t";
     const char* name;
-    if (*at != '\\') {
-      AddBytes(text, at, 1);
-    } else if (*++at == 'u') {
+    const bool is_escaped = *at == '\\';
+    if (is_escaped) ++at;
+    if (is_escaped && *at == 'u') {
       unsigned code = HexNumber(at + 1, end);
       char bytes[4];
       size_t size;
@@ -262,7 +262,7 @@ static void AddFromJson(Text* text, Piece json) {
       if (size > 2) bytes[size - 2] = (char)(0x80 | (code >> 6 & 0x3F));
       if (size > 3) bytes[size - 3] = (char)(0x80 | (code >> 12 & 0x3F));
       AddBytes(text, bytes, size);
-    } else if ((name = strchr(names, *at)) != NULL && *at != '\0') {
+    } else if (is_escaped && (name = strchr(names, *at)) != NULL && *at != '\0') {
       AddBytes(text, meanings + (name - names), 1);
     } else {
       AddBytes(text, at, 1);
@@ -395,7 +395,7 @@ static bool ReadVariable(Table* table, char* rest) {
   if (!Grow((void**)&table->variables, table->count, sizeof variable)) return false;
   memset(&variable, 0, sizeof variable);
   variable.name = Copy(NextWord(&rest));
-  variable.type = *NextWord(&rest);
+  variable.type = (unsigned char)*NextWord(&rest);
   role = NextWord(&rest);
   for (variable.role = ROLE_TIME; variable.role < ROLES && strcmp(kRoles[variable.role], role) != 0;) ++variable.role;
   variable.agent = atoi(NextWord(&rest));
@@ -746,7 +746,10 @@ static int Spawn(Instance* instance, const char* program, int output) {
   size_t count = 0;
   AddWords(&experiment, instance->resources);
   AddWords(&experiment, "/experiment.toml");
-  if (experiment.failed) return ENOMEM;
+  if (experiment.failed) {
+    Clear(&experiment);
+    return ENOMEM;
+  }
   words[count++] = (char*)program;
   words[count++] = (char*)"serve";
   words[count++] = experiment.at;
@@ -912,7 +915,7 @@ static int Connect(Instance* instance, const char* address) {
   }
 #endif
   is_in_brackets = address[0] == '[' && colon[-1] == ']';
-  AddBytes(&host, address + is_in_brackets, (size_t)(colon - address) - 2 * is_in_brackets);
+  AddBytes(&host, address + is_in_brackets, (size_t)(colon - address) - (is_in_brackets ? 2u : 0u));
   if (host.failed) return Fail(instance, FATAL, "no memory");
   memset(&hints, 0, sizeof hints);
   hints.ai_socktype = SOCK_STREAM;
@@ -1137,15 +1140,16 @@ static int TakeState(Instance* instance, const Text* content, bool* has_failed) 
     const char* agent = variable->role >= ROLE_STATE ? agents[variable->agent] : NULL;
     if (variable->role == ROLE_TICK) value->whole = instance->at.tick;
     if (variable->role == ROLE_END) value->whole = instance->at.is_over;
-    if (variable->role == ROLE_FIGURE) value->real = Double(content->at + 20 + 8 * variable->index);
-    if (variable->role == ROLE_STATE) value->real = Double(agent + 8 * variable->index);
+    if (variable->role == ROLE_FIGURE) value->real = Double(content->at + 20 + (size_t)8 * (size_t)variable->index);
+    if (variable->role == ROLE_STATE) value->real = Double(agent + (size_t)8 * (size_t)variable->index);
     if (variable->role == ROLE_LOST) value->whole = Unsigned32(agent + 104) != 0;
     if (variable->role == ROLE_COUNT) value->whole = Unsigned32(agent + 108);
     if (variable->role == ROLE_HEARD) {
       const uint32_t count = Unsigned32(agent + 108);
       uint32_t n;
       value->whole = 0;
-      for (n = 0; n < count; ++n) value->whole |= Unsigned32(agent + 112 + 4 * n) == (uint32_t)variable->index + 1;
+      for (n = 0; n < count; ++n)
+        value->whole |= Unsigned32(agent + 112 + (size_t)4 * n) == (uint32_t)variable->index + 1;
     }
   }
   free((void*)agents);
@@ -1694,7 +1698,7 @@ static int Serialize(Instance* instance, void* state, void* to, size_t size) {
   if (status == OK && size < bytes.size)
     status = Fail(instance, ERRED, "the state has %llu bytes, and there is room for %llu",
                   (unsigned long long)bytes.size, (unsigned long long)size);
-  if (status == OK) memcpy(to, bytes.at, bytes.size);
+  if (status == OK && bytes.at != NULL) memcpy(to, bytes.at, bytes.size);
   Clear(&bytes);
   return status;
 }
@@ -2221,12 +2225,14 @@ EXPORTED int FMI2(GetStringStatus)(void* component, int kind, const char** value
 }
 
 /* Functions of what this FMU does not have: model exchange, derivatives, interpolation. */
+/* NOLINTBEGIN(bugprone-macro-parentheses): the parameters are a list with parentheses of its own */
 #define LACKS2(name, parameters)       \
   EXPORTED int FMI2(name) parameters { \
     Instance* instance = component;    \
     REQUIRE(ALIVE, #name);             \
     return NONE2(instance, #name);     \
   }
+/* NOLINTEND(bugprone-macro-parentheses) */
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-parameter"
@@ -2400,6 +2406,7 @@ EXPORTED int FMI3(SetString)(void* component, const uint32_t references[], size_
 }
 
 /* Types that no variable has. */
+/* NOLINTBEGIN(bugprone-macro-parentheses): the parameters are a list with parentheses of its own */
 #define NO_TYPE3(name, parameters)                                                                         \
   EXPORTED int FMI3(name) parameters {                                                                     \
     Instance* instance = component;                                                                        \
@@ -2407,6 +2414,7 @@ EXPORTED int FMI3(SetString)(void* component, const uint32_t references[], size_
     (void)references, (void)values;                                                                        \
     return count == 0 ? OK : Fail(instance, ERRED, "fmi3" #name ": no variable of this FMU has the type"); \
   }
+/* NOLINTEND(bugprone-macro-parentheses) */
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-parameter"
@@ -2430,12 +2438,14 @@ NO_TYPE3(GetClock, (void* component, const uint32_t references[], size_t count, 
 NO_TYPE3(SetClock, (void* component, const uint32_t references[], size_t count, const bool values[]))
 
 /* Functions of what this FMU does not have. */
+/* NOLINTBEGIN(bugprone-macro-parentheses): the parameters are a list with parentheses of its own */
 #define LACKS3(name, parameters)       \
   EXPORTED int FMI3(name) parameters { \
     Instance* instance = component;    \
     REQUIRE(ALIVE, #name);             \
     return NONE3(instance, #name);     \
   }
+/* NOLINTEND(bugprone-macro-parentheses) */
 LACKS3(GetNumberOfVariableDependencies, (void* component, uint32_t reference, size_t* count))
 LACKS3(GetVariableDependencies, (void* component, uint32_t dependent, size_t dependent_elements[],
                                  uint32_t independents[], size_t independent_elements[], int kinds[], size_t count))

@@ -95,7 +95,7 @@ class Hosts : public testing::Test {
 
   /// What starts agent `id` on the other host for a run that has said this.
   static std::vector<std::string> AgentWords(const std::string& said, int id) {
-    std::vector<std::string> words{MASCOT_BINARY_DIR "/agent", "--id", std::to_string(id), "--domain",
+    std::vector<std::string> words{std::string(MASCOT_BINARY_DIR) + "/agent", "--id", std::to_string(id), "--domain",
                                    std::to_string(std::stoi(said.substr(said.find("domain ") + 7)))};
     if (const auto at = said.find("THIS-HOST:"); at != std::string::npos)
       words.insert(words.end(), {"--discovery", "10.77.0.1:" + std::to_string(std::stoi(said.substr(at + 10)))});

@@ -5,6 +5,7 @@
 
 #include "agent/fmi/error.h"
 #include "agent/fmi/model_description.h"
+#include "tests/support/noise.h"
 
 namespace mascot {
 namespace {
@@ -100,9 +101,7 @@ TEST(FmuArchive, RefusesBombs) {
 }
 
 TEST(FmuArchive, RefusesBombsOfManyFiles) {
-  std::string noise(400'000, '\0');
-  std::uint32_t state = 1;
-  for (char& one : noise) one = static_cast<char>((state = state * 1664525 + 1013904223) >> 24);
+  const std::string noise = test::Noise(400'000);
   std::string bytes = PackFiles({{"a", noise}, {"b", noise}, {"c", noise}, {"d", noise}, {"e", noise}});
   constexpr std::uint32_t kClaimed = 60 << 20;  // 157 times as much as it is packed
   for (std::size_t at = CentralEntry(bytes); at != bytes.npos; at = bytes.find("PK\x01\x02", at + 4))

@@ -7,6 +7,7 @@
 #include "agent/laws/laws.h"
 #include "base/base64.h"
 #include "tests/experiment/fly_rows.h"
+#include "tests/support/noise.h"
 #include "tests/support/scratch.h"
 #include "tests/support/three_agents.h"
 
@@ -401,12 +402,7 @@ TEST(FmuLaw, NeedsADescription) {
 
 TEST(FmuLaw, MayNotBeTooLargeToTravel) {
   const std::string big = Edited(3, [](std::map<std::string, std::string>& files) {
-    std::string& noise = files["resources/noise"];
-    std::uint64_t state = 1;
-    for (std::size_t k = 0; k < (std::size_t{8} << 20); ++k) {
-      state = state * 6364136223846793005U + 1442695040888963407U;
-      noise += static_cast<char>(state >> 56);
-    }
+    files["resources/noise"] = test::Noise(std::size_t{8} << 20);
   });
   EXPECT_THAT(Refusal(Three(big)), HasSubstr("law.fmu_base64: expected an FMU of which this platform needs at most "
                                              "8388608 bytes, which travel with the experiment, got "));
