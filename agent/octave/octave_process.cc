@@ -12,7 +12,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -36,16 +35,6 @@ std::int64_t SteadyNs() { return std::chrono::steady_clock::now().time_since_epo
 
 std::int64_t DeadlineOf(const LawLimits& limits) {
   return limits.limit_s > 0 ? SteadyNs() + static_cast<std::int64_t>(limits.limit_s * 1e9) : kNever;
-}
-
-/// The path of the program, or an empty text if PATH does not have it.
-std::string FindInPath(const char* program) {
-  std::istringstream folders(EnvironmentText("PATH"));
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string path = folder + "/" + program;
-    if (access(path.c_str(), X_OK) == 0) return path;
-  }
-  return "";
 }
 
 /// While an object of this class lives, a pipe whose reader has ended gives its thread an error, and no signal.
@@ -73,14 +62,6 @@ class WithoutPipeSignal {
 ssize_t WriteSome(int descriptor, const char* bytes, std::size_t size) {
   const WithoutPipeSignal quiet;
   return write(descriptor, bytes, size);
-}
-
-/// Memory that belongs to a process alone (MB); 0 if it has ended.
-double MemoryOf_mb(pid_t process) {
-  std::ifstream file(fmt::format("/proc/{}/statm", process));
-  double size = 0, resident = 0, shared = 0;
-  file >> size >> resident >> shared;
-  return (resident - shared) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
 void MakeNonBlocking(const Descriptor& descriptor) { fcntl(descriptor.number(), F_SETFL, O_NONBLOCK); }

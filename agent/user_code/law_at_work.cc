@@ -244,6 +244,12 @@ LawLimits LimitsOfLaws(const Experiment& experiment) {
   return {kTimeShare * experiment.run.agent_timeout_s, "0.8 run.agent_timeout_s", experiment.control.python_memory_mb};
 }
 
+LawLimits LimitsOfCompiledLaws(const Experiment& experiment) {
+  LawLimits limits = LimitsOfLaws(experiment);
+  limits.memory_mb = 0;
+  return limits;
+}
+
 void MarkAsForkedByLaw() {
   forked_by_law = true;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -251,9 +257,11 @@ void MarkAsForkedByLaw() {
 
 bool IsForkedByLaw() { return forked_by_law; }
 
-double OwnMemory_mb() {
+double OwnMemory_mb() { return MemoryOf_mb(getpid()); }
+
+double MemoryOf_mb(pid_t process) {
   std::uint64_t size = 0, resident = 0, shared = 0;
-  std::ifstream("/proc/self/statm") >> size >> resident >> shared;
+  std::ifstream("/proc/" + std::to_string(process) + "/statm") >> size >> resident >> shared;
   static const auto page = static_cast<double>(sysconf(_SC_PAGESIZE));
   return resident > shared ? static_cast<double>(resident - shared) * page / 1e6 : 0;
 }

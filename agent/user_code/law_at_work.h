@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -47,12 +49,15 @@ class LawAtWork {
 void ExplainCrashes();
 /// The limits of the laws that users wrote, in this experiment.
 LawLimits LimitsOfLaws(const Experiment& experiment);
+/// The same without one of memory, which is for laws in Python and Octave.
+LawLimits LimitsOfCompiledLaws(const Experiment& experiment);
 /// Whether this process is one that a law has forked.
 bool IsForkedByLaw();
 /// Marks this process as one that a law has forked: from now on it dies with its parent. For forks in other threads of
 /// a law.
 void MarkAsForkedByLaw();
-/// Memory that belongs to this process alone (MB).
+/// Memory that belongs to this process, or another one, alone (MB); 0 if it has ended.
 double OwnMemory_mb();
+double MemoryOf_mb(pid_t process);
 
 }  // namespace mascot

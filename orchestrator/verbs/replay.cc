@@ -3,12 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -28,6 +26,7 @@
 #include "orchestrator/report/json.h"
 #include "orchestrator/verbs/config_args.h"
 #include "orchestrator/verbs/verb.h"
+#include "system/environment.h"
 #include "system/interruptions.h"
 
 namespace mascot {
@@ -77,11 +76,8 @@ void RefuseCombinations(const ReplayArgs& args) {
 
 /// Throws ConfigError if there is no gdb in PATH.
 void RequireGdb() {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (std::error_code unknown; fs::is_regular_file(fs::path(folder) / "gdb", unknown)) return;
-  throw ConfigError({"--debug: expected the debugger gdb, which is not installed (apt install gdb)"});
+  if (FindInPath("gdb").empty())
+    throw ConfigError({"--debug: expected the debugger gdb, which is not installed (apt install gdb)"});
 }
 
 double ReadSpeed(const std::string& text) {

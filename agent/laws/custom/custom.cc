@@ -2,6 +2,7 @@
 #include "agent/laws/custom/custom.h"
 
 #include "agent/laws/parts/row_parts.h"
+#include "agent/laws/parts/user_params.h"
 
 namespace mascot {
 namespace {
@@ -62,10 +63,7 @@ void ReadKeys(const Experiment& experiment, Section& law, CustomParams& params) 
   params.data = ReadLawData(law);
   params.style = kPythonStyles.Value(law.OneOf("style"));
   params.wanted = kOutputs.Value(law.OneOf("output"));
-  if (law.Has("params") && law.Kind("params") != "table")
-    law.Fail("params", "expected a table, got a " + law.Kind("params"));
-  else
-    params.params = law.Free("params");
+  params.params = ReadUserParams(law);
 }
 
 /// Whether the law sends messages: as the key says, else whether the text defines message().

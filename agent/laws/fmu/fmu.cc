@@ -14,6 +14,7 @@
 #include "agent/fmi/error.h"
 #include "agent/laws/fmu/fmu_law.h"
 #include "agent/laws/parts/row_parts.h"
+#include "agent/laws/parts/user_params.h"
 #include "agent/user_code/law_at_work.h"
 #include "agent/user_code/law_output.h"
 #include "base/base64.h"
@@ -44,12 +45,6 @@ constexpr Key kFmuParameters[] = {
         .Otherwise("by name alone"),
 };
 
-LawLimits LimitsOfFmus(const Experiment& experiment) {
-  LawLimits limits = LimitsOfLaws(experiment);
-  limits.memory_mb = 0;  // that is a key for laws in Python
-  return limits;
-}
-
 /// Takes the words of an FMU to where laws print.
 FmuLog LogOf(const std::string& who) {
   const auto output = std::make_shared<LawOutput>(LawOutput::Kind::kUsual);
@@ -63,7 +58,7 @@ class FmuLawOfAgent final : public Law {
   FmuLawOfAgent(const Experiment& experiment, int id)
       : id_(id),
         who_("the law of agent " + std::to_string(id)),
-        limits_(LimitsOfFmus(experiment)),
+        limits_(LimitsOfCompiledLaws(experiment)),
         rate_hz_(experiment.control.rate_hz),
         params_(&ParamsOf<FmuLawParams>(experiment.agent(id).law)),
         inputs_(params_->inputs),
@@ -220,7 +215,7 @@ void CheckProcesses(const Experiment& experiment, const LawConfig& law_config, c
 void TryInstance(const Experiment& experiment, const std::string& key, Section& law, const FmuLawParams& params) {
   if (params.once_per_process) return;
   const std::string who = "the law in " + params.name;
-  const LawAtWork at_work(who, LimitsOfFmus(experiment));
+  const LawAtWork at_work(who, LimitsOfCompiledLaws(experiment));
   try {
     params.fmu->Instantiate("trial", LogOf(who))->Begin(SettingsOf(params.parameters));
   } catch (const std::runtime_error& error) {
@@ -252,8 +247,7 @@ void LeaveTables(Section& law) {
 std::shared_ptr<const LawParams> ReadFmu(const Experiment& experiment, const LawConfig& config, Section& section) {
   auto params = std::make_shared<FmuLawParams>();
   params->wanted = kOutputs.Value(section.OneOf("output"));
-  if (section.Has("params") && section.Kind("params") != "table")
-    section.Fail("params", "expected a table, got a " + section.Kind("params"));
+  HasParamsTable(section);
   const std::string key = section.Has("file") ? "file" : "fmu_base64";
   params->fmu = ReadFmuFile(key, section, params->name);
   if (!params->fmu) {

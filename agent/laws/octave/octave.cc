@@ -12,6 +12,7 @@
 #include "agent/laws/laws.h"
 #include "agent/laws/parts/law_text.h"
 #include "agent/laws/parts/row_parts.h"
+#include "agent/laws/parts/user_params.h"
 #include "agent/octave/octave_process.h"
 #include "agent/octave/octave_text.h"
 #include "agent/user_code/law_output.h"
@@ -179,10 +180,7 @@ std::shared_ptr<const LawParams> ReadOctave(const Experiment& experiment, const 
   auto params = std::make_shared<OctaveParams>();
   ReadOctaveCode(experiment, section, params->code);
   params->wanted = kOutputs.Value(section.OneOf("output"));
-  if (section.Has("params") && section.Kind("params") != "table")
-    section.Fail("params", "expected a table, got a " + section.Kind("params"));
-  else
-    params->params = section.Free("params");
+  params->params = ReadUserParams(section);
   params->sends_messages = SendsByOctave(experiment, section, params->code);
   return params;
 }

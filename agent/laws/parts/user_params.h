@@ -7,8 +7,13 @@
 
 namespace mascot {
 
-/// Notes the keys of `params`, the table [law.params] that the user's own law gets, that the law does not take: all but
-/// `known`.
+// The table [law.params] that the user's own law gets.
+
+/// Whether it is a table, or left out. Notes a mistake otherwise.
+bool HasParamsTable(Section& law);
+/// The table; an empty one after a mistake, which it notes, or if it is left out.
+Value ReadUserParams(Section& law);
+/// Notes the keys of `params`, that table, which the law does not take: all but `known`.
 void FailUnknownParams(Section& law, const Value& params, std::span<const std::string_view> known);
 
 }  // namespace mascot

@@ -80,7 +80,7 @@ class Plugin final : public Law {
 std::unique_ptr<Law> MakePlugin(const Experiment& experiment, int id) {
   const auto& plugin = ParamsOf<PluginConfig>(experiment.agent(id).law);
   const std::string who = NameOfLaw(id);
-  const LawLimits limits = LimitsOfPlugins(experiment);
+  const LawLimits limits = LimitsOfCompiledLaws(experiment);
   const LawAtWork at_work(who, limits);
   try {
     PluginParams params(plugin.params);

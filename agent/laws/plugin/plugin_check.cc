@@ -13,10 +13,7 @@ namespace {
 
 void ReadKeys(Section& law, PluginConfig& plugin) {
   plugin.library = law.PathOfFile("library");
-  if (law.Has("params") && law.Kind("params") != "table")
-    law.Fail("params", "expected a table, got a " + law.Kind("params"));
-  else
-    plugin.params = law.Free("params");
+  plugin.params = ReadUserParams(law);
 }
 
 /// Notes a mistake that the law found in its parameters: at the key if `words` name it ("params.gain: expected ...").
@@ -53,7 +50,7 @@ std::vector<int> AgentsOf(const Experiment& experiment, const LawConfig& law) {
 /// Opens the library and lets it make a law for each agent. Returns whether it can send messages.
 bool TryAll(const Experiment& experiment, const LawConfig& config, PluginConfig& plugin, Section& law) {
   const std::string who = "the law in " + plugin.library;
-  const LawAtWork at_work(who, LimitsOfPlugins(experiment));
+  const LawAtWork at_work(who, LimitsOfCompiledLaws(experiment));
   try {
     const LawLibrary library(plugin.library);
     for (const int id : AgentsOf(experiment, config)) {
@@ -88,12 +85,6 @@ PluginSetup SetupOf(const Experiment& experiment, int id, PluginParams& params) 
           .rate_hz = static_cast<double>(experiment.control.rate_hz),
           .seed = experiment.run.seed,
           .params = params};
-}
-
-LawLimits LimitsOfPlugins(const Experiment& experiment) {
-  LawLimits limits = LimitsOfLaws(experiment);
-  limits.memory_mb = 0;  // that is a key for laws in Python
-  return limits;
 }
 
 /// Text of the exception that is being handled.

@@ -20,8 +20,6 @@ struct PluginConfig final : LawParams {
 
 /// What the library gets to make the law of agent `id`.
 PluginSetup SetupOf(const Experiment& experiment, int id, PluginParams& params);
-/// How long a call of the law may take.
-LawLimits LimitsOfPlugins(const Experiment& experiment);
 /// Text of the exception that is being handled.
 std::string ExceptionText();
 /// LawEntry::read: lets the library make the law of each agent once, to check its parameters and what it wants.
