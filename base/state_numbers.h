@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -10,6 +11,19 @@ namespace mascot {
 /// How many numbers a motion is for programs outside: p (3, m), v (3, m/s), attitude (4: x, y, z, w with w >= 0 of the
 /// unit quaternion that takes B to W), angular velocity in B (3, rad/s).
 inline constexpr std::size_t kStateNumbers = 13;
+
+/// A list of these numbers: its name for programs outside, and where it begins among all.
+struct StatePart {
+  const char *name, *unit, *meaning;
+  std::size_t begin, size;
+};
+inline constexpr std::array kStateParts = {
+    StatePart{"p", "m", "position in W", 0, 3},
+    StatePart{"v", "m/s", "velocity in W", 3, 3},
+    StatePart{"attitude", "1", "x, y, z, w of the unit quaternion that takes components in B to components in W", 6, 4},
+    StatePart{"w", "rad/s", "angular velocity, components in B", 10, 3},
+};
+static_assert(kStateParts.back().begin + kStateParts.back().size == kStateNumbers);
 
 /// Writes these numbers.
 inline void StateTo(const Motion& motion, std::span<double, kStateNumbers> to) {

@@ -108,7 +108,7 @@ void Episodes::Take(Event event) {
 }
 
 void Episodes::Step() {
-  if (is_over_) throw std::runtime_error("the episode is over: expected a reset");
+  RequireGoingOn();
   Answer();
   if (!Await()) return End();
   flight_->Step();
@@ -119,7 +119,7 @@ void Episodes::Step() {
 }
 
 void Episodes::GoTo(std::int64_t tick, const std::function<bool()>& goes_on) {
-  if (is_over()) Step();  // which says so
+  RequireGoingOn();
   while (this->tick() < tick && !is_over() && goes_on()) Step();
 }
 

@@ -61,6 +61,10 @@ Event SteppedTeam::EventByHand(const std::string& toml) const {
   return event;
 }
 
+void SteppedTeam::RequireGoingOn() const {
+  if (is_over()) throw std::runtime_error("the episode is over: expected a reset");
+}
+
 void SteppedTeam::Note(std::int64_t tick, std::string toml) {
   if (keeps_ == Keeps::kHistory) history_.events.push_back({tick, std::move(toml)});
 }

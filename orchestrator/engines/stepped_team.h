@@ -105,6 +105,8 @@ class SteppedTeam {
   Event EventByHand(const std::string& toml) const;
   /// Act(), of an agent that there is.
   virtual void Give(int id, std::span<const double> action) = 0;
+  /// Throws std::runtime_error if the episode is over.
+  void RequireGoingOn() const;
   /// An event was given, and will take effect at `tick`.
   void Note(std::int64_t tick, std::string toml);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -19,19 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Causality = FmuVariable::Causality;
 using Role = FmuVariable::Role;
-
-/// A list of three or four numbers of an agent's state, and where it begins among all of them (base/state_numbers.h).
-struct StatePart {
-  const char *name, *unit, *meaning;
-  std::size_t begin, size;
-};
-constexpr std::array kStateParts = {
-    StatePart{"p", "m", "position in W", 0, 3},
-    StatePart{"v", "m/s", "velocity in W", 3, 3},
-    StatePart{"attitude", "1", "x, y, z, w of the unit quaternion that takes components in B to components in W", 6, 4},
-    StatePart{"w", "rad/s", "angular velocity, components in B", 10, 3},
-};
-static_assert(kStateParts.back().begin + kStateParts.back().size == kStateNumbers);
 
 /// Collects the variables of a team.
 class Collector {

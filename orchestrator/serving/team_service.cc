@@ -197,7 +197,6 @@ void TeamService::Begin() {
 
 Json TeamService::Answer(const Json& request) {
   const std::string kind(KindOf(request).name);
-  if (kind != "hello" && kind != "reset") team_->AwaitStates();
   Json answer{{"answer", kind}};
   if (request.contains("id")) answer["id"] = request["id"];
   if (kind == "hello") answer.update(Hello());
@@ -219,7 +218,7 @@ Json TeamService::Answer(const Json& request) {
 
 Json TeamService::Hello() const {
   const Experiment& experiment = team_->experiment();
-  Json ports = Json::array(), keys = Json::array(), figures = Json::array();
+  Json ports = Json::array(), keys = Json::array(), figures = Json::array(), units = Json::object();
   for (const Port& port : ports_) {
     const bool velocity = WantedBy(experiment.agent(port.agent).law) == Wanted::kVelocity;
     ports.push_back({{"agent", port.agent},
@@ -227,6 +226,7 @@ Json TeamService::Hello() const {
                      {"wants", velocity ? "velocity" : "acceleration"},
                      {"unit", velocity ? "m/s" : "m/s^2"}});
   }
+  for (const StatePart& part : kStateParts) units[part.name] = part.unit;
   for (const ShownKey& key : ShownKeysOf(experiment))
     keys.push_back({{"key", key.name},
                     {"value", JsonOrNull<Json>(key.value)},
@@ -234,18 +234,12 @@ Json TeamService::Hello() const {
                     {"meaning", std::string(key.row.meaning)}});
   for (const Figure& figure : FigureTable())
     figures.push_back({{"name", figure.name}, {"unit", figure.unit}, {"meaning", figure.description}});
-  return {{"protocol", kServeProtocol},
-          {"mascot", MASCOT_VERSION},
-          {"name", experiment.run.name},
-          {"engine", options_.engine},
-          {"agents", experiment.size()},
-          {"rate_hz", experiment.control.rate_hz},
-          {"ticks", experiment.ticks()},
-          {"duration_s", experiment.run.duration_s},
-          {"seed", experiment.run.seed},
-          {"ports", std::move(ports)},
-          {"units", {{"p", "m"}, {"v", "m/s"}, {"attitude", "1"}, {"w", "rad/s"}}},
-          {"figures", std::move(figures)},
+  return {{"protocol", kServeProtocol},  {"mascot", MASCOT_VERSION},
+          {"name", experiment.run.name}, {"engine", options_.engine},
+          {"agents", experiment.size()}, {"rate_hz", experiment.control.rate_hz},
+          {"ticks", experiment.ticks()}, {"duration_s", experiment.run.duration_s},
+          {"seed", experiment.run.seed}, {"ports", std::move(ports)},
+          {"units", std::move(units)},   {"figures", std::move(figures)},
           {"keys", std::move(keys)}};
 }
 
@@ -269,32 +263,25 @@ std::vector<double> TeamService::Figures() const {
 Json TeamService::State() {
   team_->AwaitStates();
   const Experiment& experiment = team_->experiment();
-  Json p = Json::array(), v = Json::array(), attitude = Json::array(), w = Json::array(), heard = Json::array(),
-       lost = Json::array(), figures = Json::object();
+  Json state{{"tick", team_->tick()},
+             {"t_s", experiment.time_s(team_->tick())},
+             {"over", team_->is_over()},
+             {"failure", team_->failure()}};
+  for (const StatePart& part : kStateParts) state[part.name] = Json::array();
+  Json heard = Json::array(), lost = Json::array(), figures = Json::object();
   for (int id = 1; id <= experiment.size(); ++id) {
     std::array<double, kStateNumbers> numbers{};
     StateTo(team_->row().motions[static_cast<std::size_t>(id - 1)], numbers);
-    const std::span<const double> all(numbers);
-    p.push_back(ListOf(all.subspan(0, 3)));
-    v.push_back(ListOf(all.subspan(3, 3)));
-    attitude.push_back(ListOf(all.subspan(6, 4)));
-    w.push_back(ListOf(all.subspan(10, 3)));
+    for (const StatePart& part : kStateParts)
+      state[part.name].push_back(ListOf(std::span<const double>(numbers).subspan(part.begin, part.size)));
     heard.push_back(team_->HeardBy(id));
     if (team_->IsLost(id)) lost.push_back(id);
   }
   const std::vector<double> values = Figures();
   for (std::size_t k = 0; k < values.size(); ++k) figures[FigureTable()[k].name] = values[k];
-  Json state{{"tick", team_->tick()},
-             {"t_s", experiment.time_s(team_->tick())},
-             {"over", team_->is_over()},
-             {"failure", team_->failure()},
-             {"p", std::move(p)},
-             {"v", std::move(v)},
-             {"attitude", std::move(attitude)},
-             {"w", std::move(w)},
-             {"heard", std::move(heard)},
-             {"lost", std::move(lost)},
-             {"figures", std::move(figures)}};
+  state["heard"] = std::move(heard);
+  state["lost"] = std::move(lost);
+  state["figures"] = std::move(figures);
   if (records_) state["recording"] = records_->newest().string();
   return state;
 }
@@ -348,6 +335,7 @@ Json TeamService::Step(const Json& request) {
     fields.Require();
   }
   const auto actions = ActionsIn(request.value("actions", Json()));
+  team_->AwaitStates();
   for (std::size_t k = 0; k < ports_.size(); ++k)
     if (!actions[k].empty()) Act(ports_[k], actions[k]);
   Step(ticks, {});
@@ -371,7 +359,7 @@ void TeamService::Step(std::int64_t ticks, std::span<const double> actions) {
       Act(port, actions.first(port.numbers));
       actions = actions.subspan(port.numbers);
     }
-  if (ticks > 0) team_->GoTo(team_->tick() + ticks, [this] { return !options_.may_go_on || options_.may_go_on(); });
+  if (ticks > 0) team_->GoTo(team_->tick() + ticks, options_.may_go_on);
 }
 
 Json TeamService::Take(const Json& event) {
@@ -382,6 +370,7 @@ Json TeamService::Take(const Json& event) {
     name.data = key;
     toml += (toml.empty() ? "" : "\n") + ToToml(name) + " = " + ToToml(ValueOf(value));
   }
+  team_->AwaitStates();
   team_->Take(toml);
   return {{"tick", team_->tick() + 1}};
 }

@@ -30,11 +30,11 @@ class TeamService {
   struct Options {
     std::string text, path;  ///< of the experiment
     std::vector<Override> overrides = {};
-    std::vector<int> ports = {};           ///< agents that take actions, besides those that do by the file
-    std::string engine = kInProcess;       ///< which flies them
-    Console* console = nullptr;            ///< over DDS, what processes say goes there
-    std::optional<std::string> out = {};   ///< every episode is recorded as a run in this folder: "1", "2", ...
-    std::function<bool()> may_go_on = {};  ///< asked before each tick; false: a step ends early. Empty: always true
+    std::vector<int> ports = {};          ///< agents that take actions, besides those that do by the file
+    std::string engine = kInProcess;      ///< which flies them
+    Console* console = nullptr;           ///< over DDS, what processes say goes there
+    std::optional<std::string> out = {};  ///< every episode is recorded as a run in this folder: "1", "2", ...
+    std::function<bool()> may_go_on = [] { return true; };  ///< asked before each tick; false: a step ends early
   };
   /// The first episode is at its tick 0. Throws what the engine's episodes throw (SteppedTeam).
   explicit TeamService(Options options);

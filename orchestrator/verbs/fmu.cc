@@ -12,7 +12,6 @@
 #include "experiment/toml/section.h"
 #include "orchestrator/fmu/team_fmu.h"
 #include "orchestrator/formats/compact_json.h"
-#include "orchestrator/formats/input_file.h"
 #include "orchestrator/formats/whole_file.h"
 #include "orchestrator/verbs/config_args.h"
 #include "orchestrator/verbs/verb.h"
@@ -39,13 +38,6 @@ fs::path FindLibrary() {
   throw std::runtime_error("team_fmu.so is missing: neither beside this program nor in ../lib/mascot");
 }
 
-std::string Contents(const fs::path& path) {
-  const InputFile file(path.string());
-  Bytes bytes;
-  file.Read(0, file.size(), bytes);
-  return {bytes.begin(), bytes.end()};
-}
-
 void RequireOut(const fs::path& out) {
   const fs::path folder = out.has_parent_path() ? out.parent_path() : ".";
   if (out.extension() != ".fmu" || !out.has_stem())
@@ -61,8 +53,8 @@ int MakeFmu(FmuArgs& args) {
   const FmuTeam team = FmuTeamOf(service, args.ports);
   const FmiVersion version = args.fmi == 2 ? FmiVersion::k2 : FmiVersion::k3;
   const FmuParts parts{.experiment = experiment.resolved,
-                       .binary = Contents(FindLibrary()),
-                       .source = Contents(FindShared("team_fmu.c", "orchestrator/fmu")),
+                       .binary = ReadRegularFile(FindLibrary().string()),
+                       .source = ReadRegularFile(FindShared("team_fmu.c", "orchestrator/fmu").string()),
                        .program = (ProgramFolder() / "orchestrator").string()};
   std::string bytes;
   try {

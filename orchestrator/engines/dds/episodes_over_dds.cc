@@ -248,7 +248,7 @@ void EpisodesOverDds::Reset(std::vector<Override> changes) {
 void EpisodesOverDds::AwaitStates() {
   if (run_ == nullptr) run_ = std::make_unique<Run>(experiment(), options_);
   if (run_->has_begun()) return;
-  run_->Await(0, [this] { return MayGoOn(); });
+  run_->Await(0, options_.may_go_on);
   if (!run_->has_begun())
     throw std::runtime_error(run_->is_over() ? run_->failure() : "the server ends before the first tick");
 }
@@ -268,7 +268,7 @@ void EpisodesOverDds::Take(const std::string& toml) {
 }
 
 void EpisodesOverDds::GoTo(std::int64_t tick, const std::function<bool()>& goes_on) {
-  if (is_over()) throw std::runtime_error("the episode is over: expected a reset");
+  RequireGoingOn();
   run_->GoTo(tick, goes_on);
   if (is_over() && !failure().empty()) throw std::runtime_error(failure());
 }

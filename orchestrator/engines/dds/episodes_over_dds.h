@@ -18,9 +18,9 @@ namespace mascot {
 class EpisodesOverDds final : public SteppedTeam {
  public:
   struct Options {
-    Console& console;                      ///< what the processes say goes there
-    EpisodeWitness* witness = nullptr;     ///< sees each episode that leaves its tick 0; null: nobody does
-    std::function<bool()> may_go_on = {};  ///< asked while it waits; false: it waits no longer. Empty: always true
+    Console& console;                   ///< what the processes say goes there
+    EpisodeWitness* witness = nullptr;  ///< sees each episode that leaves its tick 0; null: nobody does
+    std::function<bool()> may_go_on = [] { return true; };  ///< asked while it waits; false: it waits no longer
   };
   /// `text`, of the file at `path`, with `overrides`, is the experiment. What `options` refers to must outlive this
   /// object. Throws ConfigError.
@@ -43,7 +43,6 @@ class EpisodesOverDds final : public SteppedTeam {
   class Run;
   void Give(int id, std::span<const double> action) override;
   void Finish();
-  bool MayGoOn() const { return !options_.may_go_on || options_.may_go_on(); }
 
   const Options options_;
   std::unique_ptr<Run> run_;  // null until its states are awaited
