@@ -14,6 +14,7 @@
 #include "orchestrator/verbs/verb.h"
 #include "system/descendants.h"
 #include "system/failure.h"
+#include "system/private_folder.h"
 #include "system/standard_streams.h"
 #include "system/usage.h"
 
@@ -120,6 +121,7 @@ int main(int argc, char** argv) {
     return mascot::Main(argc, argv);
   });
   mascot::KillDescendants();
+  mascot::SweepPrivateFolders();  // of processes that were killed
   mascot::LeaveWithin(std::chrono::seconds(5), {.code = code, .process = "orchestrator", .on_signals = true});
   return code;  // and destroy what the DDS library keeps in static variables
 }

@@ -11,6 +11,7 @@
 #include <set>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "agent/fmi/archive.h"
 #include "agent/fmi/error.h"
@@ -64,6 +65,14 @@ std::string BinariesIn(const FmuArchive& archive, const ModelDescription& model)
   throw FmuError(missing + (has_sources ? ": it has sources alone, compile it first" : ""));
 }
 
+/// A library that is loaded stays; its folder goes when the process exits.
+void KeepUntilExit(std::shared_ptr<const Fmu> fmu) {
+  static std::mutex mutex;
+  static std::vector<std::shared_ptr<const Fmu>> kept;
+  const std::lock_guard lock(mutex);
+  kept.push_back(std::move(fmu));
+}
+
 class LoadedFmu final : public Fmu, public std::enable_shared_from_this<LoadedFmu> {
  public:
   explicit LoadedFmu(const std::string& bytes)
@@ -87,7 +96,6 @@ class LoadedFmu final : public Fmu, public std::enable_shared_from_this<LoadedFm
   mutable std::mutex mutex_;
   mutable std::optional<PrivateFolder> folder_;
   mutable std::optional<FmuLibrary> library_;
-  mutable std::shared_ptr<const LoadedFmu> itself_;  // a library that is loaded stays
   mutable std::atomic<int> instances_ = 0;
 };
 
@@ -144,7 +152,7 @@ const FmuLibrary& LoadedFmu::Library() const {
     throw FmuError("its library cannot be loaded: " + PlainLine(reason != nullptr ? reason : "no reason is given"));
   }
   library_.emplace(FmuLibrary{handle, model_, (folder_->path() / kResources).string()});
-  itself_ = shared_from_this();
+  KeepUntilExit(shared_from_this());
   return *library_;
 }
 

@@ -1,4 +1,4 @@
-// Files of a law, law.data, in whole runs: over DDS and in one process, again from a recording, and after a kill.
+// Files of a law, law.data and FMUs, in whole runs: over DDS and in one process, again from a recording, after a kill.
 #include <gmock/gmock.h>
 
 #include "tests/support/orchestrator.h"
@@ -70,6 +70,20 @@ TEST_F(RunWithData, LeavesNoCopiesWhenProcessesAreKilled) {
   Write("if t > 0.1: os.kill(os.getpid(), 0) or __import__('ctypes').string_at(0)");
   EXPECT_EQ(Orchestrator("up law.toml --quiet --out crashed").exit_code, 1);
   EXPECT_TRUE(IsSwept());
+}
+
+TEST_F(RunWithData, LeavesNoFilesOfAnFmu) {
+  WriteFile(scratch_.File("fmu.toml"),
+            "[run]\nduration_s = 0.5\n[agents]\ncount = 3\nmodel = 'double_integrator'\n[graph]\ntopology = 'ring'\n"
+            "[output]\nsave_plot = false\n[law]\nname = 'fmu'\nfile = '" MASCOT_BINARY_DIR
+            "/tests/fmus/law_fmi2.fmu'\n");
+  for (const char* words :
+       {"check fmu.toml", "up fmu.toml --engine inprocess --quiet --out one", "up fmu.toml --quiet --out dds",
+        "sweep fmu.toml --set run.seed=1,2 --no-plot --quiet --out s.csv", "verify one"}) {
+    const Ran ran = Orchestrator(words);
+    EXPECT_EQ(ran.exit_code, 0) << words << "\n" << ran.output;
+    EXPECT_TRUE(IsSwept()) << words;
+  }
 }
 
 }  // namespace
