@@ -85,7 +85,7 @@ TEST_F(TuneTest, GoesOnAfterItWasKilledAndWithALargerBudgetAsIfItHadNotEnded) {
   EXPECT_THAT(Table(out_).rows, SizeIs(33));
   {
     Running tune("/bin/sh", {"-c", "exec " + TuneWords(words + "--budget 30")}, folder_.File("killed"));
-    ASSERT_TRUE(Until([&] { return Table(out_).rows.size() > 40; }));
+    ASSERT_TRUE(Until([&] { return RowsSoFar(out_) > 40; }));
     SignalTo(tune.pid(), SIGKILL);
     tune.Wait();
   }
@@ -97,7 +97,7 @@ TEST_F(TuneTest, GoesOnAfterItWasKilledAndWithALargerBudgetAsIfItHadNotEnded) {
 TEST_F(TuneTest, CanBeInterruptedAndSaysHowToGoOn) {
   Running tune("/bin/sh", {"-c", "exec " + TuneWords(kRate + std::string("--budget 5000"))},
                folder_.File("interrupted"));
-  ASSERT_TRUE(Until([&] { return std::filesystem::exists(out_) && Table(out_).rows.size() > 10; }));
+  ASSERT_TRUE(Until([&] { return RowsSoFar(out_) > 10; }));
   SignalTo(tune.pid(), SIGINT);
   EXPECT_EQ(tune.Wait(), 130);
   EXPECT_THAT(tune.err(), HasSubstr("interrupted; the same command goes on with what is in " + out_));
@@ -178,7 +178,7 @@ TEST_F(TuneTest, RefusesWhatItCannotSearch) {
 
 TEST_F(TuneTest, EndsWithItsOptimiser) {
   Running tune("/bin/sh", {"-c", "exec " + TuneWords(kRate + std::string("--budget 50000"))}, folder_.File("alone"));
-  ASSERT_TRUE(Until([&] { return std::filesystem::exists(out_) && Table(out_).rows.size() > 10; }));
+  ASSERT_TRUE(Until([&] { return RowsSoFar(out_) > 10; }));
   ASSERT_EQ(Shell("pkill -9 -P " + std::to_string(tune.pid()) + " -f optimizer.py").exit_code, 0);
   EXPECT_EQ(tune.Wait(), 1);
   EXPECT_THAT(tune.err(), HasSubstr("error: the optimiser was killed by signal 9 (Killed)"));

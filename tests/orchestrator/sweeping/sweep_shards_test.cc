@@ -83,8 +83,8 @@ TEST_F(SweepShards, GoOnAfterASignal) {
     const std::string table = Folder("sweep.1-of-2.csv");
     Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
                   {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--shard", "1/2"}, Folder("interrupted"));
-    const std::size_t before = std::filesystem::exists(table) ? Table(table).rows.size() : 0;
-    ASSERT_TRUE(Until([&] { return std::filesystem::exists(table) && Table(table).rows.size() > before + 2; }));
+    const std::size_t before = RowsSoFar(table);
+    ASSERT_TRUE(Until([&] { return RowsSoFar(table) > before + 2; }));
     SignalTo(sweep.pid(), signal);
     EXPECT_EQ(sweep.Wait(), code);
     EXPECT_THAT(sweep.err(), HasSubstr(" of 2500 runs are in the table; the same command goes on with the others"));
@@ -237,7 +237,7 @@ TEST_F(SweepShards, ATaskWhoseTimeIsUpIsQueuedAgain) {
                {"PATH=" + folder_.path().string() + ":/usr/bin:/bin", "SLURM_ARRAY_TASK_ID=1", "SLURM_ARRAY_JOB_ID=42",
                 "bash", Folder("sweep.sbatch")},
                Folder("task"));
-  ASSERT_TRUE(Until([&] { return std::filesystem::exists(table) && Table(table).rows.size() > 2; }));
+  ASSERT_TRUE(Until([&] { return RowsSoFar(table) > 2; }));
   SignalTo(task.pid(), SIGUSR1);
   EXPECT_EQ(task.Wait(), 138);
   EXPECT_EQ(ReadFile(Folder("asked")), "requeue 42_1\n");

@@ -38,6 +38,12 @@ struct Table {
   std::vector<Cells> rows;
 };
 
+/// The number of rows of a table that a sweep may be writing: only whole rows count. 0 if there is no table.
+inline std::size_t RowsSoFar(const std::string& path) {
+  const std::string text = ReadFile(path);
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(std::ranges::count(text, '\n') - 1, 0));
+}
+
 /// A folder with a small experiment, and where its sweep goes.
 class SweepTest : public ::testing::Test {
  protected:

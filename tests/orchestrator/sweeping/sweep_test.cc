@@ -54,7 +54,7 @@ TEST_F(SweepTest, GoesOnAfterItWasKilledWithNoRowTwiceAndNoneHalf) {
     Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
                   {"sweep", config_, "--out", out_, "--set", "law.p_gain=0.01:0.01:2.0", "--no-plot"},
                   folder_.File("killed"));
-    ASSERT_TRUE(Until([&] { return std::filesystem::exists(out_) && Table(out_).rows.size() > 5; }));
+    ASSERT_TRUE(Until([&] { return RowsSoFar(out_) > 5; }));
     SignalTo(sweep.pid(), SIGKILL);
     sweep.Wait();
   }
@@ -69,7 +69,7 @@ TEST_F(SweepTest, GoesOnAfterItWasKilledWithNoRowTwiceAndNoneHalf) {
 TEST_F(SweepTest, CanBeInterruptedAndSaysHowToGoOn) {
   Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
                 {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--no-plot"}, folder_.File("interrupted"));
-  ASSERT_TRUE(Until([&] { return std::filesystem::exists(out_) && Table(out_).rows.size() > 2; }));
+  ASSERT_TRUE(Until([&] { return RowsSoFar(out_) > 2; }));
   SignalTo(sweep.pid(), SIGINT);
   EXPECT_EQ(sweep.Wait(), 130);
   EXPECT_THAT(sweep.err(), HasSubstr(" of 5000 runs are in the table; the same command goes on with the others"));
@@ -513,7 +513,7 @@ TEST_F(SweepTest, KeepsApartTheFilesOfTablesWhoseNamesDifferBehindADot) {
 TEST_F(SweepTest, RefusesATableThatAnotherSweepIsWriting) {
   Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
                 {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--no-plot"}, folder_.File("first"));
-  ASSERT_TRUE(Until([&] { return std::filesystem::exists(out_) && Table(out_).rows.size() > 2; }));
+  ASSERT_TRUE(Until([&] { return RowsSoFar(out_) > 2; }));
   for (const char* words : {"--seeds 1..5000 --no-plot", "--seeds 1..2 --no-plot --force"}) {
     const Ran second = Sweep(words);
     EXPECT_EQ(second.exit_code, 2) << second.output;
@@ -589,6 +589,14 @@ TEST_F(SweepTest, DrawsCurvesMapsAndHistograms) {
   const Ran nothing = Sweep("--seeds 1..2 --force --plot consensus.predicted.minmax_time_s");
   EXPECT_EQ(nothing.exit_code, 1);
   EXPECT_THAT(nothing.output, HasSubstr("error: " + out_ + ": no run has a consensus.predicted.minmax_time_s"));
+}
+
+TEST_F(SweepTest, CountsWholeRowsOfATableThatGrows) {
+  EXPECT_EQ(RowsSoFar(out_), 0u) << "there is none";
+  for (const auto& [text, rows] : {std::pair("a,b", 0u), {"a,b\n", 0u}, {"a,b\n1,", 0u}, {"a,b\n1,2\n3", 1u}}) {
+    WriteFile(out_, text);
+    EXPECT_EQ(RowsSoFar(out_), rows) << text;
+  }
 }
 
 }  // namespace
