@@ -42,6 +42,7 @@ constexpr auto kTimeToLeave = std::chrono::seconds(5);
 constexpr auto kTimeToReport = std::chrono::seconds(3);  // see Lifecycle::SetFinal()
 /// For what an agent has written before it is lost. A neighbour that hangs takes nothing.
 constexpr auto kTimeToDeliver = std::chrono::seconds(2);
+constexpr int kTimeToBeRead_ms = 300;   // for what a listener has confirmed: nobody confirms that
 constexpr int kHeads = 2;               // the orchestrator and the physics server
 constexpr int kTurns = 4;               // see JoinDomain()
 constexpr int kKilled = 128 + SIGKILL;  // exit code after KilledByEvent, if this process does not end by itself
@@ -121,7 +122,8 @@ std::vector<Peers::Place> PlacesOf(const mascot_msgs::msg::Experiment& experimen
   return places;
 }
 
-/// Listens to the experiment of a domain under a name that no process of a run has, which disturbs nobody.
+/// Listens to the experiment of a domain under a name that no process of a run has, which disturbs nobody. It stays as
+/// long as its process: see ReceiveDiscoveryByUdp() for why nobody leaves whose words may be unread.
 class PlacesOfTheRun {
  public:
   PlacesOfTheRun(DomainOptions options, StopSignal& stop)
@@ -147,6 +149,7 @@ class PlacesOfTheRun {
  private:
   static DomainOptions WithName(DomainOptions options) {
     options.name = "listener";
+    options.number = -1;  // the agent's own is that of the agent
     return options;
   }
   void Take(const mascot_msgs::msg::Experiment& experiment) {
@@ -183,8 +186,7 @@ std::string WhyNotAwaited(const ProcessArgs& args, const std::vector<Peers::Plac
 
 /// An agent that was started by hand looks first whether the run waits for it: as one that is not awaited, it would end
 /// the run of all others. Returns the exit code with which it ends; nothing: it goes on.
-std::optional<int> RefuseIfNotAwaited(const ProcessArgs& args, StopSignal& stop) {
-  PlacesOfTheRun run(args.options, stop);
+std::optional<int> RefuseIfNotAwaited(const ProcessArgs& args, PlacesOfTheRun& run) {
   int code = 1;
   std::string error;
   try {
@@ -197,6 +199,7 @@ std::optional<int> RefuseIfNotAwaited(const ProcessArgs& args, StopSignal& stop)
     error = InWords(failure);
   }
   if (!error.empty()) std::cerr << "error: " << error << std::endl;
+  poll(nullptr, 0, kTimeToBeRead_ms);
   Leave(args, kTimeToLeave, code);
   return code;
 }
@@ -283,6 +286,10 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
     role->Run();
   } catch (const Ended& ended) {
     code = ended.signal() == 0 ? 0 : 128 + ended.signal();
+    if (args.IsByHand() && code != 0) {  // others go on, and have read what they confirm: see ReceiveDiscoveryByUdp()
+      Leave(args, kTimeToDeliver + kTimeToLeave, code);
+      domain.AwaitReaders(kTimeToDeliver);
+    }
   } catch (const KilledByEvent&) {
     Leave(args, kTimeToDeliver + kTimeToLeave, kKilled);
     domain.AwaitReaders(kTimeToDeliver);
@@ -367,8 +374,9 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
     TakeCredentials(args);
     RequireAddresses(args.options);
     if (args.parent == 0) RequireResources({.shared_memory = SharedMemoryNeeded(args.options)});  // else it was asked
+    std::optional<PlacesOfTheRun> run;
     if (args.IsByHand() && args.options.credentials == nullptr)
-      if (const auto code = RefuseIfNotAwaited(args, stop)) return *code;
+      if (const auto code = RefuseIfNotAwaited(args, run.emplace(args.options, stop))) return *code;
     const int code = Join(args, stop, make_role);
     if (code == kKilled) raise(SIGKILL);
     return code;

@@ -143,11 +143,14 @@ Locator_t UdpLocator(const std::string& address) {
   return locator;
 }
 
-/// With credentials, discovery and handshakes among the processes of a run come by UDP alone, in one thread. A
+/// Discovery comes by UDP alone. If the first thing that a process reads of another in shared memory is still unread
+/// when the other leaves, Fast DDS 2.9 reads nothing more there: it looks for the other's segment again and again. So
+/// that nobody who leaves at once, such as a tool that lists topics, makes a process deaf, its words of discovery are
+/// not there. With credentials, this lets discovery and handshakes among the processes of a run come in one thread. A
 /// participant begins a handshake as soon as it hears of another; if its first word came in another thread, the other
-/// might still be busy with discovering it, and Fast DDS 2.9 drops the word, to say it again a second later. Whoever
-/// does not know the numbers of a run's processes finds them by multicast, as without credentials.
-void ReceiveDiscoveryInOneThread(dds::DomainParticipantQos& qos, const DomainOptions& options) {
+/// might still be busy with discovering it, and Fast DDS drops the word, to say it again a second later. Whoever does
+/// not know the numbers of a run's processes finds them by multicast, as without credentials.
+void ReceiveDiscoveryByUdp(dds::DomainParticipantQos& qos, const DomainOptions& options) {
   auto& builtin = qos.wire_protocol().builtin;
   auto& locators = builtin.metatrafficUnicastLocatorList;
   locators.push_back(UdpLocator("127.0.0.1"));
@@ -274,7 +277,7 @@ dds::DomainParticipantQos ParticipantQos(const DomainOptions& options) {
   if (TransportOf(options).udp || options.role != DiscoveryRole::kPeer)
     qos.transport().user_transports.push_back(Udp(options));
   SetDiscovery(qos, options);
-  if (options.credentials != nullptr && TransportOf(options).udp) ReceiveDiscoveryInOneThread(qos, options);
+  if (options.role != DiscoveryRole::kServer && TransportOf(options).udp) ReceiveDiscoveryByUdp(qos, options);
   if (options.patient) qos.wire_protocol().builtin.discovery_config.leaseDuration = eprosima::fastrtps::c_TimeInfinite;
   return qos;
 }

@@ -2,6 +2,7 @@
 
 #include "bus/bus.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <pwd.h>
 #include <sched.h>
@@ -18,6 +19,7 @@
 #include "bus/leave.h"
 #include "bus/lifecycle.h"
 #include "bus/obituary.h"
+#include "bus/ports.h"
 #include "bus/wire.h"
 #include "idl/schemas.h"
 #include "orchestrator/engines/dds/machine/domain_lock.h"
@@ -363,14 +365,19 @@ TEST(Leaving, HeedsNoSignalUnlessItIsToEndByForce) {
   EXPECT_EXIT(LeaveInSpiteOf(true), testing::ExitedWithCode(3), "");
 }
 
-/// Bytes of the files of Fast DDS in /dev/shm that this process maps.
-std::uint64_t MappedSharedMemory() {
+/// The files of Fast DDS in /dev/shm that this process maps.
+std::set<std::string> FilesInSharedMemory() {
   std::set<std::string> files;
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);)
     if (const auto at = line.find("/dev/shm/fastrtps_"); at != line.npos) files.insert(line.substr(at));
+  return files;
+}
+
+/// Their bytes.
+std::uint64_t MappedSharedMemory() {
   std::uint64_t bytes = 0;
-  for (const std::string& file : files)
+  for (const std::string& file : FilesInSharedMemory())
     if (std::filesystem::exists(file)) bytes += std::filesystem::file_size(file);  // else it says "(deleted)"
   return bytes;
 }
@@ -419,6 +426,29 @@ TEST(SharedMemoryNeed, IsKnownBeforeAParticipantIsMade) {
     EXPECT_LT(needed, 1.1 * taken) << peers;
     options.transport = "udp";
     EXPECT_EQ(SharedMemoryNeeded(options), 0u);
+  }
+}
+
+/// Who leaves before its first words in shared memory are read makes the reader deaf: so discovery is not there.
+TEST(Discovery, ComesByUdpAlone) {
+  constexpr int kNumber = 50;
+  const DomainLock lock(-1);
+  for (const bool has_udp : {true, false}) {
+    DomainOptions options;
+    options.domain = lock.domain();
+    options.transport = has_udp ? "auto" : "shm";
+    options.name = "reader";
+    options.number = kNumber;
+    options.loopback = true;
+    Domain domain(options, [] {});
+    const Reader<StateType> reader(domain, Topic::State(1), [](const auto&) {});
+    const int discovery = DiscoveryPort(options.domain, kNumber), samples = discovery + 1;
+    std::set<std::string> ports;
+    for (const std::string& file : FilesInSharedMemory())
+      if (const auto at = file.find("port"); at != file.npos) ports.insert(file.substr(at));
+    EXPECT_TRUE(ports.contains(fmt::format("port{}", samples)));
+    EXPECT_EQ(ports.contains(fmt::format("port{}", discovery)), !has_udp);
+    EXPECT_EQ(ports.contains(fmt::format("port{}", FirstPort(options.domain))), !has_udp) << "by multicast";
   }
 }
 
