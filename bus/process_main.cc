@@ -42,7 +42,7 @@ constexpr auto kTimeToLeave = std::chrono::seconds(5);
 constexpr auto kTimeToReport = std::chrono::seconds(3);  // see Lifecycle::SetFinal()
 /// For what an agent has written before it is lost. A neighbour that hangs takes nothing.
 constexpr auto kTimeToDeliver = std::chrono::seconds(2);
-constexpr int kTimeToBeRead_ms = 300;   // for what a listener has confirmed: nobody confirms that
+constexpr int kTimeToBeRead_ms = 300;   // in which others read what PlacesOfTheRun has sent them
 constexpr int kHeads = 2;               // the orchestrator and the physics server
 constexpr int kTurns = 4;               // see JoinDomain()
 constexpr int kKilled = 128 + SIGKILL;  // exit code after KilledByEvent, if this process does not end by itself
@@ -122,8 +122,9 @@ std::vector<Peers::Place> PlacesOf(const mascot_msgs::msg::Experiment& experimen
   return places;
 }
 
-/// Listens to the experiment of a domain under a name that no process of a run has, which disturbs nobody. It stays as
-/// long as its process: see ReceiveDiscoveryByUdp() for why nobody leaves whose words may be unread.
+/// Listens to the experiment of a domain under a name that no process of a run has, which disturbs nobody. It stays in
+/// the domain as long as its process: if it left before others had read what it sent, they might become deaf
+/// (ReceiveDiscoveryByUdp in bus/qos.cc).
 class PlacesOfTheRun {
  public:
   PlacesOfTheRun(DomainOptions options, StopSignal& stop)
@@ -149,7 +150,7 @@ class PlacesOfTheRun {
  private:
   static DomainOptions WithName(DomainOptions options) {
     options.name = "listener";
-    options.number = -1;  // the agent's own is that of the agent
+    options.number = -1;  // the agent's participant has that of --participant
     return options;
   }
   void Take(const mascot_msgs::msg::Experiment& experiment) {
@@ -286,7 +287,7 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
     role->Run();
   } catch (const Ended& ended) {
     code = ended.signal() == 0 ? 0 : 128 + ended.signal();
-    if (args.IsByHand() && code != 0) {  // others go on, and have read what they confirm: see ReceiveDiscoveryByUdp()
+    if (args.IsByHand() && code != 0) {  // the others go on, and must have read what it sent, as with PlacesOfTheRun
       Leave(args, kTimeToDeliver + kTimeToLeave, code);
       domain.AwaitReaders(kTimeToDeliver);
     }
@@ -373,9 +374,12 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   try {
     TakeCredentials(args);
     RequireAddresses(args.options);
-    if (args.parent == 0) RequireResources({.shared_memory = SharedMemoryNeeded(args.options)});  // else it was asked
+    const bool looks_first = args.IsByHand() && args.options.credentials == nullptr;
+    const std::uint64_t participants = looks_first ? 2 : 1;
+    if (args.parent == 0)  // else the orchestrator has asked
+      RequireResources({.shared_memory = participants * SharedMemoryNeeded(args.options)});
     std::optional<PlacesOfTheRun> run;
-    if (args.IsByHand() && args.options.credentials == nullptr)
+    if (looks_first)
       if (const auto code = RefuseIfNotAwaited(args, run.emplace(args.options, stop))) return *code;
     const int code = Join(args, stop, make_role);
     if (code == kKilled) raise(SIGKILL);

@@ -143,10 +143,11 @@ Locator_t UdpLocator(const std::string& address) {
   return locator;
 }
 
-/// Discovery comes by UDP alone. If the first thing that a process reads of another in shared memory is still unread
-/// when the other leaves, Fast DDS 2.9 reads nothing more there: it looks for the other's segment again and again. So
-/// that nobody who leaves at once, such as a tool that lists topics, makes a process deaf, its words of discovery are
-/// not there. With credentials, this lets discovery and handshakes among the processes of a run come in one thread. A
+/// Messages of discovery come by UDP alone. If a participant leaves while its first message in shared memory is still
+/// unread, Fast DDS 2.9 makes the reader deaf: it looks for the segment of that participant again and again, and reads
+/// no other message there. A tool that lists topics, for example, leaves at once.
+///
+/// With credentials, this also lets discovery and handshakes among the processes of a run come in one thread. A
 /// participant begins a handshake as soon as it hears of another; if its first word came in another thread, the other
 /// might still be busy with discovering it, and Fast DDS drops the word, to say it again a second later. Whoever does
 /// not know the numbers of a run's processes finds them by multicast, as without credentials.

@@ -429,7 +429,8 @@ TEST(SharedMemoryNeed, IsKnownBeforeAParticipantIsMade) {
   }
 }
 
-/// Who leaves before its first words in shared memory are read makes the reader deaf: so discovery is not there.
+/// A participant that leaves before others have read its first message in shared memory makes them deaf there. Messages
+/// of discovery therefore go by UDP.
 TEST(Discovery, ComesByUdpAlone) {
   constexpr int kNumber = 50;
   const DomainLock lock(-1);
