@@ -32,9 +32,14 @@ std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only)
   return count;
 }
 
+std::string TransportOf(const Experiment& experiment) {
+  const bool outlives_agents = experiment.run.on_agent_loss != OnAgentLoss::kAbort;
+  return experiment.network.transport == "auto" && outlives_agents ? "udp" : experiment.network.transport;
+}
+
 bool AsksAgain(const Experiment& experiment) {
   return experiment.run.mode == Mode::kLockstep && experiment.network.is_bundled() &&
-         experiment.network.transport != "udp" && std::ranges::none_of(experiment.agents, [](const AgentConfig& agent) {
+         TransportOf(experiment) != "udp" && std::ranges::none_of(experiment.agents, [](const AgentConfig& agent) {
            return agent.external || !agent.host.empty();
          });
 }

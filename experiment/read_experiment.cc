@@ -358,7 +358,10 @@ void CheckFormat(Section& document) {
 std::span<const Key> ExperimentKeys() {
   static const Key network_keys[] = {
       DomainKey(),
-      key::OneOf("transport", kTransports, "auto: shared memory on one host, UDP between hosts").Default("\"auto\""),
+      key::OneOf(
+          "transport", kTransports,
+          "auto: shared memory on one host, UDP between hosts, and in runs that outlive agents (run.on_agent_loss)")
+          .Default("\"auto\""),
       key::Integer("agents_per_process", 1, kMaxAgents, "how many agents share a process").Default("1"),
       key::OneOf(
           "delivery", kDeliveries.names(),

@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Runs, LossesByEvents,
                          testing::Values(Layout{"bundled"},
                                          Layout{"two in a process", {"--set", "network.agents_per_process=2"}},
                                          Layout{"all in a process", {"--set", "network.agents_per_process=5"}},
-                                         Layout{"by UDP", {"--set", "network.transport=udp"}},
+                                         Layout{"in shared memory", {"--set", "network.transport=shm"}},
                                          Layout{"topics", {"--set", "network.delivery=topics"}, /*restarts=*/false}),
                          [](const auto& row) { return ParamName(row.param.name); });
 
@@ -277,6 +277,28 @@ struct Storm {
   std::size_t kills = 0, said_before = 0;
   std::string says;
 };
+
+TEST(Losses, RunsThatOutliveAgentsShareNoMemoryUnlessAsked) {
+  struct Row {
+    std::string on_agent_loss, transport;
+    bool shares;
+  };
+  for (const Row& row : {Row{"abort", "auto", true}, Row{"abort", "udp", false}, Row{"hold", "auto", false},
+                         Row{"drop", "auto", false}, Row{"restart", "auto", false}, Row{"hold", "shm", true}}) {
+    SCOPED_TRACE(row.on_agent_loss + " " + row.transport);
+    ScratchFolder folder;
+    WriteFile(folder.File("team.toml"), Ring("duration_s = 100000.0\non_agent_loss = '" + row.on_agent_loss + "'", ""));
+    Up up(folder, "run", folder.File("team.toml"),
+          {"--engine", "dds", "--set", "network.transport=" + row.transport, "--set", "output.fidelity=false"});
+    ASSERT_TRUE(Flies(up));
+    for (const std::string process : {"physics_server", "agent_1"}) {
+      const std::string maps = ReadFile("/proc/" + std::to_string(up.Child(process)) + "/maps");
+      EXPECT_EQ(maps.find("/dev/shm/fastrtps_port") != maps.npos, row.shares) << process;
+    }
+    up.Signal(SIGINT);
+    EXPECT_EQ(up.Wait(), 130) << up.err();
+  }
+}
 
 class RandomKills : public testing::TestWithParam<Storm> {};
 

@@ -67,7 +67,7 @@ int ParticipantsOfAgents(const Experiment& experiment, AgentRange agents) {
 
 std::vector<std::string> ArgumentsOf(const Experiment& experiment, int domain, int participants) {
   return {"--domain",       std::to_string(domain),
-          "--transport",    experiment.network.transport,
+          "--transport",    TransportOf(experiment),
           "--wait-s",       std::to_string(static_cast<int>(experiment.run.start_timeout_s) + 1),
           "--participants", std::to_string(participants)};
 }

@@ -158,7 +158,6 @@ class DdsRun {
   std::vector<std::string> dead_;                              // processes for which to say farewell
   std::map<std::string, std::vector<std::string>> arguments_;  // of the processes of agents on this host
   int next_number_ = kFirstAgents;  // DomainOptions::number of the next process that starts afresh
-  bool number_is_used_ = false;     // all numbers have been
   /// A process that was started afresh.
   struct Start {
     std::int64_t tick = -1;
@@ -299,7 +298,7 @@ void DdsRun::AwaitParticipants() {
 /// ranks (kMaxRank).
 bool DdsRun::MayBeStar() const {
   const bool finds_all = experiment_.network.is_bundled() && experiment_.hosts.empty() && !external_;
-  return (finds_all || experiment_.network.is_secure()) && experiment_.network.transport != "shm" &&
+  return (finds_all || experiment_.network.is_secure()) && TransportOf(experiment_) != "shm" &&
          ProcessesOn("") <= kMaxNumbered;
 }
 
@@ -336,7 +335,7 @@ void DdsRun::ShowToRos() {
 DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const {
   DomainOptions options;
   options.domain = lock_->domain();
-  options.transport = experiment_.network.transport;
+  options.transport = TransportOf(experiment_);
   options.name = name;
   options.role = role;
   options.number = role == DiscoveryRole::kServer ? kDiscoveryNumber : kOwnNumber;
@@ -718,12 +717,9 @@ void DdsRun::StartAfresh(AgentRange agents, std::int64_t tick) {
   start = {.tick = tick, .times = start.tick == tick ? start.times + 1 : 1, .runs = true};
   std::erase_if(losses_, [agents](const auto& loss) { return loss.first == agents; });
   std::vector<std::string> arguments = known->second;
-  // Not the number of a process before it: others still write into the memory behind the ports of that. When all
-  // numbers are used up, the process takes ports without memory.
+  // Not the number of a process before it, as long as there are others: with network.transport = "shm", others still
+  // write into the memory behind the ports of that.
   *std::next(std::ranges::find(arguments, "--participant")) = std::to_string(next_number_);
-  if (number_is_used_ && experiment_.network.transport == "auto")
-    *std::next(std::ranges::find(arguments, "--transport")) = "udp";
-  number_is_used_ = number_is_used_ || next_number_ + 1 == kOwnNumber;
   next_number_ = next_number_ + 1 < kOwnNumber ? next_number_ + 1 : kFirstAgents;
   if (credentials_)
     *std::next(std::ranges::find(arguments, "--credentials")) =

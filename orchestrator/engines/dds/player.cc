@@ -64,7 +64,7 @@ Player::Result Player::Play() {
 DomainOptions Player::Options() const {
   DomainOptions options;
   options.domain = own_domain_->domain();
-  options.transport = experiment_.network.transport;
+  options.transport = TransportOf(experiment_);
   options.name = kOrchestrator;
   options.number = is_star_ ? kPlayersNumber : -1;
   options.loopback = true;
@@ -76,8 +76,7 @@ DomainOptions Player::Options() const {
 
 void Player::Join() {
   own_domain_.emplace(experiment_.network.domain);
-  is_star_ =
-      experiment_.network.transport != "shm" && !IsUdpPortInUse(DiscoveryPort(own_domain_->domain(), kPlayersNumber));
+  is_star_ = TransportOf(experiment_) != "shm" && !IsUdpPortInUse(DiscoveryPort(own_domain_->domain(), kPlayersNumber));
   RequireAddresses(Options());
   RequireResources({.shared_memory = 2 * SharedMemoryNeeded(Options()), .processes = 2, .descriptors = kDescriptors});
   if (program_.is_plain()) {  // others may outlive us: the janitor ends them
