@@ -109,10 +109,17 @@ std::vector<pid_t> Children::SpawnCopies(const std::string& program, const std::
   return ids;
 }
 
+/// Returns its status from waitpid once it has ended.
+std::optional<int> Children::Reap(ChildProcess& child) {
+  const std::optional<int> status = child.ReapIfEnded();
+  if (status && WIFSIGNALED(*status)) killed_at_ = WallClock::now();
+  return status;
+}
+
 std::vector<Exit> Children::Reap() {
   std::vector<Exit> exits;
   for (Child& child : running_)
-    if (const auto status = child.process.ReapIfEnded()) exits.push_back({child.name, *status});
+    if (const auto status = Reap(child.process)) exits.push_back({child.name, *status});
   std::erase_if(running_, [](const Child& child) { return child.process.number() == 0; });
   return exits;
 }
@@ -144,7 +151,7 @@ void Children::Kill(const std::string& process) {
     if (is_it(child)) child.process.Signal(SIGKILL);
   const auto deadline = WallClock::now() + kLongestDeath;
   while (std::ranges::any_of(running_, is_it) && WallClock::now() < deadline) {
-    std::erase_if(running_, [&](Child& child) { return is_it(child) && child.process.ReapIfEnded(); });
+    std::erase_if(running_, [&](Child& child) { return is_it(child) && Reap(child.process); });
     poll(nullptr, 0, 2);
   }
 }

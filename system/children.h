@@ -77,9 +77,12 @@ class Children {
   void Kill();
   /// The same for the children of this name: Reap() does not tell of them.
   void Kill(const std::string& process);
+  /// When the last child was reaped that a signal has killed, from here or not; nothing: none was.
+  std::optional<std::chrono::steady_clock::time_point> killed_at() const { return killed_at_; }
 
  private:
   void Signal(int signal);
+  std::optional<int> Reap(ChildProcess& child);
 
   ChildLogs& logs_;
   std::vector<int> shared_;
@@ -88,6 +91,7 @@ class Children {
     ChildProcess process;
   };
   std::vector<Child> running_;
+  std::optional<std::chrono::steady_clock::time_point> killed_at_;
 };
 
 }  // namespace mascot

@@ -78,13 +78,14 @@ EngineResult EngineRun::Fly() {
   return result;
 }
 
-void EngineRun::End() {
+void EngineRun::End(bool process_goes_on) {
   if (janitor_) janitor_->Dismiss();  // the orchestrator kills what laws have started at its own end
-  if (dds_) hangs_ = !dds_->End();
+  if (dds_) has_left_ = dds_->End(process_goes_on);
 }
 
-void EngineRun::LeaveIfItHangs(int code) const {
-  if (hangs_) LeaveNow({.code = code, .process = "orchestrator"});  // its threads use what would be destroyed
+void EngineRun::LeaveByForceIfNeeded(int code) const {
+  if (has_left_) return;
+  LeaveNow({.code = code, .process = "orchestrator", .says_so = false});  // its threads use what would be destroyed
 }
 
 }  // namespace mascot

@@ -57,9 +57,9 @@ class EngineRun {
   /// write it to files before calling End().
   EngineResult Fly();
   /// Ends what the run has started (DdsEngine::End()).
-  void End();
-  /// After End(): if the DDS library hangs, ends this process by force with this exit code.
-  void LeaveIfItHangs(int code) const;
+  void End(bool process_goes_on);
+  /// After End(): if the DDS library has not let go (DdsEngine::End()), ends this process by force with this exit code.
+  void LeaveByForceIfNeeded(int code) const;
 
  private:
   const Experiment& experiment_;
@@ -71,7 +71,7 @@ class EngineRun {
   ActionSource* const actions_;
   std::optional<DdsEngine> dds_;    // absent: in this process
   std::optional<Janitor> janitor_;  // in this process, with laws of users
-  bool hangs_ = false;
+  bool has_left_ = true;
 };
 
 }  // namespace mascot

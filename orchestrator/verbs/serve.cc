@@ -69,7 +69,8 @@ int Serve(ServeArgs& args) {
   socket.Run(goes_on, args.once, patience);
   const bool has_ended = team.Leave();
   const int code = goes_on() ? kExitDone : 128 + interruptions->signal();
-  if (!has_ended) LeaveNow({.code = code, .process = "orchestrator"});  // threads use what would be destroyed
+  if (!has_ended)  // threads use what would be destroyed
+    LeaveNow({.code = code, .process = "orchestrator", .says_so = false});
   return code;
 }
 

@@ -239,13 +239,13 @@ int Up(UpArgs& args) {
     FlushStandardOutput();
   };
   const auto draw = [&] {
-    flight.End();  // after the first summary: the DDS library may not let us end in order
+    flight.End(viewers.Stay());  // after the first summary: the DDS library may not let us end in order
     files.WriteTables(incidents);
     return MakeOutput(experiment, folder, files.has_moved(), stop);
   };
   const int code = EndRun(folder, ExitCode(result), {.summary = summary, .draw = draw, .print = print});
   if (code < 128 && files.samples() > 0 && viewers.Stay()) viewers.ShowRecording(folder, stop);
-  flight.LeaveIfItHangs(code);
+  flight.LeaveByForceIfNeeded(code);
   return code;
 }
 

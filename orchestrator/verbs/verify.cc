@@ -157,8 +157,8 @@ int Verify(const VerifyArgs& args) {
   if (code == kExitFailed)
     if (const std::string cause = TryLaws(experiment).difference; !cause.empty())
       std::cout << "a likely cause: " << cause << std::endl;
-  flight.End();
-  flight.LeaveIfItHangs(code);
+  flight.End(/*process_goes_on=*/false);
+  flight.LeaveByForceIfNeeded(code);
   return code;
 }
 

@@ -84,7 +84,7 @@ FlownTold FlyTold(const ScratchFolder& scratch, const std::string& name, const s
     Crew crew;
     EngineRun run(engine, experiment, folder, sinks, nullptr, console, stop, crew, nullptr, actions);
     flown.result = run.Fly();
-    run.End();
+    run.End(/*process_goes_on=*/true);
     const Experiment as_flown = WithEvents(experiment, happened.by_hand());
     folder.Write("config.toml", as_flown.resolved);
     writer.Close(WithoutDelivery(as_flown));

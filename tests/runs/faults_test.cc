@@ -168,6 +168,20 @@ TEST(Faults, ResultsAreWrittenBeforeTheDomainIsLeftAndASignalEndsALeavingThatHan
   EXPECT_TRUE(NothingIsLeft(up));
 }
 
+TEST(Faults, WhoeverFliesWithAProcessThatWasKilledDoesNotLeaveByTheLibrary) {
+  ScratchFolder folder;
+  Running up("/bin/sh",
+             {"-c", Hanging("orchestrator", "up " + Config("leaderless") + " --duration-s 1000 --out " +
+                                                folder.File("run") + " --set output.save_plot=false")},
+             folder.File("up"));
+  ASSERT_TRUE(Flies(up));
+  SignalTo(ChildOf(up.pid(), "--id 2 "), SIGKILL);
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), HasSubstr("error: agent_2 was killed by signal 9 (Killed)"));
+  EXPECT_THAT(up.err(), testing::Not(HasSubstr("leaving")));
+  EXPECT_TRUE(NothingIsLeft(up));
+}
+
 TEST(Faults, AProcessThatWasStartedByHandLeavesWithinItsTime) {
   ScratchFolder folder;
   Running agent("/bin/sh", {"-c", Hanging("agent", "--id 3 --loopback --domain 101 --wait-s 1")}, folder.File("agent"));

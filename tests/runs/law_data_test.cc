@@ -69,7 +69,7 @@ TEST_F(RunWithData, LeavesNoCopiesWhenProcessesAreKilled) {
   }
   Write("if t > 0.1: os.kill(os.getpid(), 0) or __import__('ctypes').string_at(0)");
   EXPECT_EQ(Orchestrator("up law.toml --quiet --out crashed").exit_code, 1);
-  EXPECT_TRUE(IsSwept());
+  EXPECT_TRUE(Until([&] { return IsSwept(); }));
 }
 
 TEST_F(RunWithData, LeavesNoFilesOfAnFmu) {

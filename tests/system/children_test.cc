@@ -138,6 +138,24 @@ TEST_F(ChildrenTest, AChildThatHandlesSigtermEndsByItself) {
   EXPECT_THAT(logs_.LastLines("orderly"), ElementsAre("up", "down"));
 }
 
+TEST_F(ChildrenTest, ItIsKnownWhenASignalHasKilledOne) {
+  Spawn("one", "exit 137");
+  AwaitExits(1);
+  EXPECT_FALSE(children_.killed_at()) << "it has ended by itself";
+  const auto before = std::chrono::steady_clock::now();
+  Spawn("one", "kill -9 $$");
+  AwaitExits(1);
+  ASSERT_TRUE(children_.killed_at());
+  EXPECT_GE(*children_.killed_at(), before);
+  EXPECT_LE(*children_.killed_at(), std::chrono::steady_clock::now());
+}
+
+TEST_F(ChildrenTest, AChildThatIsKilledFromHereCountsAsKilled) {
+  Spawn("one", "exec sleep 1000");
+  children_.Kill("one");
+  EXPECT_TRUE(children_.killed_at());
+}
+
 TEST_F(ChildrenTest, AProgramThatIsNotThereIsNamed) {
   EXPECT_THAT([&] { children_.Spawn("agent_1", "/nowhere/agent", {}, folder_.File("agent_1.log")); },
               ThrowsMessage<std::runtime_error>("cannot start /nowhere/agent: No such file or directory"));

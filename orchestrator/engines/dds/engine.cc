@@ -62,6 +62,9 @@ constexpr auto kExitGrace = 5s, kLastWords = 60s;
 constexpr int kOwnDescriptors = 120, kDescriptorsPerProcess = 3;
 /// How long the DDS library may take for a call at the end of a run.
 constexpr auto kLibraryGrace = 5s;
+/// How long after a process was killed Fast DDS may still replace the queue in shared memory of which that had the
+/// lock.
+constexpr auto kQueueHeals = 3s;
 /// How often a process is started afresh at one tick before the run fails.
 constexpr int kMaxStarts = 10;
 /// A host is lost before its agents are: within this part of run.agent_timeout_s. A host is more patient with us.
@@ -86,7 +89,7 @@ class DdsRun {
          Stepper* stepper);
   void LeaveIfKilled(const std::string& path, const std::string& text) { last_words_ = {path, text}; }
   EngineResult Fly();
-  bool End();
+  bool End(bool process_goes_on);
 
  private:
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
@@ -136,6 +139,7 @@ class DdsRun {
   void AwaitReport();
   void Collect();
   void TakeReport();
+  void AwaitAgentsByHand();
   void LeaveDomain();
 
   const Experiment& experiment_;
@@ -786,7 +790,9 @@ void DdsRun::AskToEnd() {
 
 /// Calls the DDS library once the run is over. If it fails or hangs, End() still stops the processes with signals.
 void DdsRun::CallLibrary(const std::function<void()>& call) try {
-  if (!library_hangs_) library_hangs_ = !ReturnsWithin(kLibraryGrace, call, stop_);
+  if (library_hangs_ || ReturnsWithin(kLibraryGrace, call, stop_)) return;
+  library_hangs_ = true;
+  console_.Line("orchestrator: the DDS library does not end: leaving by force");
 } catch (const std::exception& failure) {
   console_.Line(InWords(failure));
 }
@@ -848,18 +854,29 @@ void DdsRun::TakeReport() {
   if (experiment_.run.mode == Mode::kRealtime) result_.pacing = std::move(pacing);
 }
 
-bool DdsRun::End() {
+bool DdsRun::End(bool process_goes_on) {
   if (links_) AskToEnd();
   const bool others = launcher_ && launcher_->End();
   if (phases_.in_order() || others) AwaitChildren();
   children_.Stop(2s);
   KillDescendants({janitor_ ? janitor_->process() : 0});
   const bool is_half_made = joins_ && !domain_;
-  CallLibrary([this] { LeaveDomain(); });
+  CallLibrary([this] { AwaitAgentsByHand(); });
+  // A process that was killed may have kept the lock of our queue in shared memory. Fast DDS 2.9 replaces the queue
+  // then, in another thread, and crashes if it is leaving the domain at that time, because leaving waits for the lock.
+  const bool may_crash = domain_ && TransportOf(experiment_) != "udp" && children_.killed_at();
+  const bool leaves = process_goes_on || !may_crash;
+  while (leaves && may_crash && WallClock::now() < *children_.killed_at() + kQueueHeals && stop_.Within(20ms) == 0)
+    continue;
+  if (leaves)
+    CallLibrary([this] { LeaveDomain(); });
+  else
+    SayFarewellFor(domain_->guid_prefix(), lock_->domain());
   if (library_hangs_) return false;
   if (is_half_made) return true;  // a participant that failed to join has files open until our end: the janitor sweeps
   if (lock_) SweepSharedMemory(lock_->domain());
-  SweepPrivateFolders();  // of processes that were killed
+  SweepPrivateFolders();      // of processes that were killed
+  if (!leaves) return false;  // Fast DDS may make a queue anew: the janitor sweeps, too
   if (janitor_) janitor_->Dismiss();
   return true;
 }
@@ -878,11 +895,14 @@ void DdsRun::AwaitChildren() {
     console_.Line("warning: a host has not ended by itself; what its agents printed last may be missing in the logs");
 }
 
-void DdsRun::LeaveDomain() {
-  // Agents that were started by hand are not our children: wait until they have left the domain.
+/// They are not our children: waits until they have left the domain.
+void DdsRun::AwaitAgentsByHand() {
   const auto deadline = WallClock::now() + 2s;
   while (external_ && links_ && links_->listeners() > 0 && WallClock::now() < deadline)
     std::this_thread::sleep_for(20ms);
+}
+
+void DdsRun::LeaveDomain() {
   ros_publisher_.reset();
   actions_.reset();
   recorder_.reset();
@@ -896,15 +916,15 @@ DdsEngine::DdsEngine(const Experiment& experiment, const RunFolder& folder, cons
                      Stepper* stepper)
     : run_(std::make_unique<DdsRun>(experiment, folder, sinks, requests, console, stop, ros, actions, stepper)) {}
 
-DdsEngine::~DdsEngine() { End(); }
+DdsEngine::~DdsEngine() { End(/*process_goes_on=*/true); }
 
 void DdsEngine::LeaveIfKilled(const std::string& path, const std::string& text) { run_->LeaveIfKilled(path, text); }
 
 EngineResult DdsEngine::Fly() { return run_->Fly(); }
 
-bool DdsEngine::End() {
+bool DdsEngine::End(bool process_goes_on) {
   if (!run_) return true;
-  const bool ended = run_->End();
+  const bool ended = run_->End(process_goes_on);
   if (!ended) static_cast<void>(run_.release());  // threads of the library use it
   run_.reset();
   return ended;

@@ -38,10 +38,11 @@ class DdsEngine {
   /// Flies until the run is over, for whatever reason. The result reports a failure. It is final; the caller should
   /// write it to files before it calls End().
   EngineResult Fly();
-  /// Ends every child process, leaves the domain and removes the run's shared memory. Returns whether the DDS library
-  /// let go within 5 s and before a signal. If not, its threads go on, and this process has to end by _exit(); the
-  /// run's Janitor then removes the shared memory.
-  bool End();
+  /// Ends every child process, leaves the domain and removes the run's shared memory. Returns false if this process has
+  /// to end by _exit(), because threads of the DDS library go on: the library has not let go within 5 s and before a
+  /// signal, which a line on the console says, or `process_goes_on` is false and a child has been killed a short time
+  /// ago. The run's Janitor removes the shared memory then.
+  bool End(bool process_goes_on);
 
  private:
   std::unique_ptr<DdsRun> run_;

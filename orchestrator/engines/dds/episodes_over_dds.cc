@@ -173,7 +173,7 @@ class EpisodesOverDds::Run final : public Stepper, public RowSink {
       is_done_ = true;
     }
     changed_.notify_all();
-    if (engine) hangs_ = !engine->End();
+    if (engine) hangs_ = !engine->End(/*process_goes_on=*/true);
   }
   /// Lets the ticks before this one go on.
   void Open(std::int64_t tick) {
