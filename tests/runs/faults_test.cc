@@ -148,12 +148,17 @@ std::string Hanging(const std::string& process, const std::string& command) {
          MASCOT_BINARY_DIR "/" + process + "' " + command;
 }
 
+/// `up` for so long, with results in folder/run, whose orchestrator says so and hangs when it leaves its domain.
+Running UpThatCannotLeave(const ScratchFolder& folder, const std::string& duration_s) {
+  return Running("/bin/sh",
+                 {"-c", Hanging("orchestrator", "up " + Config("leaderless") + " --duration-s " + duration_s +
+                                                    " --out " + folder.File("run") + " --set output.save_plot=false")},
+                 folder.File("up"));
+}
+
 TEST(Faults, ResultsAreWrittenBeforeTheDomainIsLeftAndASignalEndsALeavingThatHangs) {
   ScratchFolder folder;
-  Running up("/bin/sh",
-             {"-c", Hanging("orchestrator", "up " + Config("leaderless") + " --duration-s 0.5 --out " +
-                                                folder.File("run") + " --set output.save_plot=false")},
-             folder.File("up"));
+  Running up = UpThatCannotLeave(folder, "0.5");
   ASSERT_TRUE(Until([&] { return up.Said("leaving the domain hangs"); }));
   const auto summary = [&] { return nlohmann::json::parse(ReadFile(folder.File("run/summary.json"))); };
   EXPECT_EQ(summary()["ticks"], 50);
@@ -170,10 +175,7 @@ TEST(Faults, ResultsAreWrittenBeforeTheDomainIsLeftAndASignalEndsALeavingThatHan
 
 TEST(Faults, WhoeverFliesWithAProcessThatWasKilledDoesNotLeaveByTheLibrary) {
   ScratchFolder folder;
-  Running up("/bin/sh",
-             {"-c", Hanging("orchestrator", "up " + Config("leaderless") + " --duration-s 1000 --out " +
-                                                folder.File("run") + " --set output.save_plot=false")},
-             folder.File("up"));
+  Running up = UpThatCannotLeave(folder, "1000");
   ASSERT_TRUE(Flies(up));
   SignalTo(ChildOf(up.pid(), "--id 2 "), SIGKILL);
   EXPECT_EQ(up.Wait(), 1);

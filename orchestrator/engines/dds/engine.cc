@@ -872,11 +872,10 @@ bool DdsRun::End(bool process_goes_on) {
     CallLibrary([this] { LeaveDomain(); });
   else
     SayFarewellFor(domain_->guid_prefix(), lock_->domain());
-  if (library_hangs_) return false;
+  if (library_hangs_ || !leaves) return false;  // the janitor sweeps: this process still has its participant
   if (is_half_made) return true;  // a participant that failed to join has files open until our end: the janitor sweeps
   if (lock_) SweepSharedMemory(lock_->domain());
-  SweepPrivateFolders();      // of processes that were killed
-  if (!leaves) return false;  // Fast DDS may make a queue anew: the janitor sweeps, too
+  SweepPrivateFolders();  // of processes that were killed
   if (janitor_) janitor_->Dismiss();
   return true;
 }

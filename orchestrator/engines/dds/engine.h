@@ -40,8 +40,8 @@ class DdsEngine {
   EngineResult Fly();
   /// Ends every child process, leaves the domain and removes the run's shared memory. Returns false if this process has
   /// to end by _exit(), because threads of the DDS library go on: the library has not let go within 5 s and before a
-  /// signal, which a line on the console says, or `process_goes_on` is false and a child has been killed a short time
-  /// ago. The run's Janitor removes the shared memory then.
+  /// signal, which a line on the console says, or it was not asked to, because `process_goes_on` is false and a child
+  /// of a run that shares memory has been killed. The run's Janitor removes the shared memory then.
   bool End(bool process_goes_on);
 
  private:
