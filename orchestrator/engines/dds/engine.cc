@@ -33,6 +33,7 @@
 #include "orchestrator/engines/dds/machine/janitor.h"
 #include "orchestrator/engines/dds/recorder.h"
 #include "orchestrator/engines/dds/ros_publisher.h"
+#include "orchestrator/engines/dds/run_layout.h"
 #include "orchestrator/engines/dds/run_links.h"
 #include "orchestrator/engines/dds/run_phases.h"
 #include "orchestrator/engines/dds/wire_audit.h"
@@ -48,14 +49,6 @@ namespace {
 using namespace std::chrono_literals;
 using WallClock = std::chrono::steady_clock;
 
-/// Participants up to which peer-to-peer discovery is used; beyond, a discovery server is faster (50: 2 s, not 5 s).
-constexpr int kMaxPeers = 20;
-/// Above this number of processes, the ports of a domain do not suffice for a number for each.
-constexpr int kMaxNumbered = 110;
-/// DomainOptions::number: agents have the numbers from kFirstAgents on. Programs of others take the lowest that are
-/// free: the two by which a star is found have the highest.
-constexpr int kDiscoveryNumber = 2, kFirstAgents = 3, kOwnNumber = kNumberOfOrchestrator,
-              kServersNumber = kNumberOfServer;
 /// How long children may take to exit by themselves at the end; longer as long as other hosts tell what theirs printed.
 constexpr auto kExitGrace = 5s, kLastWords = 60s;
 /// File descriptors of the orchestrator: with viewers; and for each process of the run (2 were counted).
@@ -93,23 +86,13 @@ class DdsRun {
 
  private:
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
-  std::uint64_t SharedMemoryOf(const std::string& host) const;
-  int ProcessesOn(const std::string& host) const;
+  DomainOptions OwnOptions() const;
   std::vector<std::string> CredentialsFor(const std::string& process);
-  bool MayBeStar() const;
-  bool NeedsServer() const;
-  int RankOf(const std::string& process) const;
-  bool HaveWords(AgentRange one, AgentRange other) const;
-  std::ptrdiff_t MatesOf(AgentRange agents) const;
-  std::vector<int> PeersOf(const std::string& process) const;
   ProcessKey KeyOf(const std::string& process, pid_t pid) const;
   HostJob JobOf(const HostConfig& host, const std::string& our_address);
-  std::string HostOf(const std::string& process) const;
-  std::string PlacedName(const std::string& process) const;
   RunPhases::Rules Rules();
   void Join();
   void AwaitParticipants();
-  void LookAtPorts();
   void ShowToRos();
   void Spawn();
   void Loop();
@@ -170,18 +153,12 @@ class DdsRun {
   };
   std::map<AgentRange, Start> started_;         // the newest
   std::map<std::string, std::string> by_hand_;  // processes that are started by hand: what to type
-  const bool external_;                         // some agents are started by hand
-  const bool reaches_others_;                   // agents may be on other hosts
   EngineResult result_;
   std::int64_t confirmed_ = 0;        // rows recorded so far
   std::uint32_t request_number_ = 0;  // number of the newest request to the physics server
   bool is_asked_ = false;             // it is that of the order that run_requests_ has now
 
-  const std::vector<AgentRange> processes_;
-  /// Every process announces itself to this one and the physics server only: others have nothing to tell each other,
-  /// but where messages have topics of their own.
-  bool is_star_;
-  bool with_server_;  // a discovery server
+  RunLayout layout_;
   const RunFolder& folder_;
   std::optional<DomainLock> lock_;
   std::optional<Janitor> janitor_;
@@ -215,14 +192,10 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
       ros_(ros),
       action_source_(stepper != nullptr ? stepper : actions),
       stepper_(stepper),
-      external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
-      reaches_others_(external_ || !std::ranges::all_of(experiment.hosts, &HostConfig::is_here)),
-      processes_(AgentProcesses(experiment)),
-      is_star_(MayBeStar()),
-      with_server_(!is_star_ && NeedsServer()),
+      layout_(experiment),
       folder_(folder),
       logs_([this](const std::string& process,
-                   const std::string& line) { console_.ChildLine(PlacedName(process), line); },
+                   const std::string& line) { console_.ChildLine(layout_.PlacedName(process), line); },
             [this](const std::string& words) { console_.Warning(words); }),
       children_(logs_),
       audit_(experiment, peers_),
@@ -250,18 +223,19 @@ void DdsRun::Join() {
         "network.delivery: expected \"bundled\" or \"auto\" in a run over DDS in which agents start "
         "afresh, got \"topics\"");
   const bool has_words = std::ranges::any_of(experiment_.agents, &AgentConfig::sends_messages);
-  if (experiment_.network.is_secure() && !experiment_.network.is_bundled() && reaches_others_ && has_words)
+  if (experiment_.network.is_secure() && !experiment_.network.is_bundled() && layout_.reaches_others() && has_words)
     throw std::runtime_error(
         "network.delivery: expected \"bundled\" or \"auto\" with security = \"graph\", where agents that send messages "
         "are on other hosts or started by hand, got \"topics\"");
   lock_.emplace(experiment_.network.domain);
   if (run_requests_ != nullptr) run_requests_->SetDomain(lock_->domain());
-  LookAtPorts();
+  layout_.SetDomain(lock_->domain(), lock_->discovery_port());
   SweepSharedMemory(lock_->domain());  // left by runs of which also the janitor was killed
-  RequireAddresses(Options(kOrchestrator, with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer));
-  RequireResources({.shared_memory = SharedMemoryOf(""),
-                    .processes = 2 + ProcessesOn(""),
-                    .descriptors = kOwnDescriptors + kDescriptorsPerProcess * static_cast<int>(processes_.size())});
+  RequireAddresses(OwnOptions());
+  RequireResources(
+      {.shared_memory = layout_.SharedMemoryOn(""),
+       .processes = 2 + layout_.ProcessesOn(""),
+       .descriptors = kOwnDescriptors + kDescriptorsPerProcess * static_cast<int>(layout_.processes().size())});
   janitor_.emplace(*lock_);
   if (!last_words_.first.empty()) janitor_->LeaveWords(last_words_.first, last_words_.second);
   if (experiment_.network.is_secure()) {
@@ -275,11 +249,10 @@ void DdsRun::Join() {
   joins_ = true;
   LowerPriority();
   auto wake = [this] { stop_.Wake(); };
-  if (with_server_) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
-  domain_.emplace(Options(kOrchestrator, with_server_ ? DiscoveryRole::kObserver : DiscoveryRole::kPeer), wake, &peers_,
-                  &audit_);
+  if (layout_.with_server()) discovery_server_.emplace(Options("discovery_server", DiscoveryRole::kServer), [] {});
+  domain_.emplace(OwnOptions(), wake, &peers_, &audit_);
   peers_.Know(kOrchestrator, ProcessKey::Of(domain_->guid_prefix()));
-  if (is_star_) AwaitParticipants();
+  if (layout_.is_star()) AwaitParticipants();
   links_.emplace(*domain_, peers_, experiment_,
                  LogFile(folder_.Log("orchestrator"), [this](const std::string& words) { console_.Warning(words); }),
                  wake);
@@ -291,38 +264,11 @@ void DdsRun::Join() {
 
 /// Waits for all processes of this host (Domain::AwaitOthers()), but not for those of which one has ended.
 void DdsRun::AwaitParticipants() {
-  domain_->AwaitOthers(1 + ProcessesOn(""), /*announces=*/true, [this](std::chrono::nanoseconds time) {
+  domain_->AwaitOthers(1 + layout_.ProcessesOn(""), /*announces=*/true, [this](std::chrono::nanoseconds time) {
     OnSignal(stop_.Within(time));
     Reap();
     return phases_.in_order();
   });
-}
-
-/// With network.security, processes find each other without multicast wherever they are, and in the order of their
-/// ranks (kMaxRank).
-bool DdsRun::MayBeStar() const {
-  const bool finds_all = experiment_.network.is_bundled() && experiment_.hosts.empty() && !external_;
-  return (finds_all || experiment_.network.is_secure()) && TransportOf(experiment_) != "shm" &&
-         ProcessesOn("") <= kMaxNumbered;
-}
-
-bool DdsRun::NeedsServer() const {
-  return !experiment_.network.is_secure() && (std::ssize(processes_) + 2 > kMaxPeers || !experiment_.hosts.empty());
-}
-
-/// Other DDS programs in the domain, if the file names it, may have the ports on which a star relies.
-void DdsRun::LookAtPorts() {
-  if (!is_star_) return;
-  for (const int number : {kOwnNumber, kServersNumber}) {
-    if (!IsUdpPortInUse(DiscoveryPort(lock_->domain(), number))) continue;
-    is_star_ = false;
-    if (experiment_.network.is_secure())
-      throw std::runtime_error(
-          fmt::format("network.domain: expected a domain whose ports are free, with security = \"graph\"; in domain {} "
-                      "port {} is in use",
-                      lock_->domain(), DiscoveryPort(lock_->domain(), number)));
-  }
-  if (!is_star_ && NeedsServer()) with_server_ = true;
 }
 
 /// Shows the run to RViz2, by a participant of its own: without shared memory, which other versions of Fast DDS may not
@@ -333,86 +279,25 @@ void DdsRun::ShowToRos() {
   options.transport = "udp";
   options.number = -1;
   ros_publisher_.emplace(
-      options, *ros_, [this](const std::string& line) { console_.Line(line); }, with_server_ ? &audit_ : nullptr);
+      options, *ros_, [this](const std::string& line) { console_.Line(line); },
+      layout_.with_server() ? &audit_ : nullptr);
 }
 
+/// Of a participant of this process.
 DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const {
-  DomainOptions options;
-  options.domain = lock_->domain();
-  options.transport = TransportOf(experiment_);
-  options.name = name;
-  options.role = role;
-  options.number = role == DiscoveryRole::kServer ? kDiscoveryNumber : kOwnNumber;
-  options.loopback = !reaches_others_;
-  if (is_star_) options.peers = PeersOf(kOrchestrator);
-  options.participants = ParticipantsOfServer(experiment_);
+  DomainOptions options = layout_.Options(name, role);
   options.credentials = own_credentials_;
-  const std::string host = role == DiscoveryRole::kServer && reaches_others_ ? "0.0.0.0" : "127.0.0.1";
-  if (with_server_) options.server = host + ":" + std::to_string(lock_->discovery_port());
   return options;
 }
 
-/// Where a process is in the order of GUIDs; see kMaxRank.
-int DdsRun::RankOf(const std::string& process) const {
-  if (process == kPhysicsServer) return kMaxRank;
-  const auto agents = std::ranges::find(processes_, AgentsOf(process).value_or(AgentRange{}));
-  if (experiment_.agent(agents->first).external) return 0;  // it announces itself to all
-  return std::max(1, kMaxRank - 2 - static_cast<int>(agents - processes_.begin()));
-}
-
-/// Whether the agents of two processes send each other messages on topics of their own.
-bool DdsRun::HaveWords(AgentRange one, AgentRange other) const {
-  if (experiment_.network.is_bundled()) return false;
-  const auto hears = [this](AgentRange listeners, AgentRange speakers) {
-    for (int id = listeners.first; id <= listeners.last; ++id)
-      for (int heard = speakers.first; heard <= speakers.last; ++heard)
-        if (experiment_.agent(heard).sends_messages && experiment_.graph.Hears(id, heard)) return true;
-    return false;
-  };
-  return hears(one, other) || hears(other, one);
-}
-
-/// How many processes of this host exchange messages with that of these agents.
-std::ptrdiff_t DdsRun::MatesOf(AgentRange agents) const {
-  return std::ranges::count_if(processes_, [&](const AgentRange& other) {
-    const AgentConfig& agent = experiment_.agent(other.first);
-    return other != agents && !agent.external && agent.host.empty() && HaveWords(agents, other);
-  });
-}
-
-/// In a star, the numbers of the processes of this host to which a process announces itself; with its own, which does
-/// not count.
-std::vector<int> DdsRun::PeersOf(const std::string& process) const {
-  if (!experiment_.network.is_secure()) return {kOwnNumber, kServersNumber};
-  if (process == kPhysicsServer || process == kOrchestrator) return {kServersNumber};
-  std::vector<int> peers{kOwnNumber, kServersNumber};
-  int number = kFirstAgents;
-  for (const AgentRange& other : processes_) {
-    if (ProcessName(other) == process) break;
-    const AgentConfig& agent = experiment_.agent(other.first);
-    if (agent.external || !agent.host.empty()) continue;
-    if (HaveWords(*AgentsOf(process), other)) peers.push_back(number);
-    ++number;
-  }
-  return peers;
-}
-
-/// The host of a process, if that is another one than this; else empty.
-std::string DdsRun::HostOf(const std::string& process) const {
-  const auto agents = AgentsOf(process);
-  return agents ? experiment_.agent(agents->first).host : "";
-}
-
-/// The name of a process with its host behind it, if that is another one: agent_3@lab1.
-std::string DdsRun::PlacedName(const std::string& process) const {
-  const std::string host = HostOf(process);
-  return host.empty() ? process : process + "@" + host;
+DomainOptions DdsRun::OwnOptions() const {
+  return Options(kOrchestrator, layout_.with_server() ? DiscoveryRole::kObserver : DiscoveryRole::kPeer);
 }
 
 /// With network.security, makes the credentials of a process that is started now. Returns its arguments for them.
 std::vector<std::string> DdsRun::CredentialsFor(const std::string& process) {
   if (!credentials_) return {};
-  return {"--credentials", credentials_->Write(credentials_->Issue(process, RankOf(process))).string()};
+  return {"--credentials", credentials_->Write(credentials_->Issue(process, layout_.RankOf(process))).string()};
 }
 
 /// Fits the participants of the newest process of this name, which has this process id. With network.security it proves
@@ -424,20 +309,20 @@ ProcessKey DdsRun::KeyOf(const std::string& process, pid_t pid) const {
 HostJob DdsRun::JobOf(const HostConfig& host, const std::string& our_address) {
   HostJob job;
   job.domain = lock_->domain();
-  job.shared_memory = SharedMemoryOf(host.name);
+  job.shared_memory = layout_.SharedMemoryOn(host.name);
   job.silence_s = std::max(kHostPatience_s, 2 * experiment_.run.agent_timeout_s);
-  for (const AgentRange& agents : processes_) {
+  for (const AgentRange& agents : layout_.processes()) {
     if (experiment_.agent(agents.first).host != host.name) continue;
     std::vector<std::string> arguments = ArgumentsOf(experiment_, lock_->domain(), agents);
     arguments.insert(arguments.end(), {"--orchestrator", std::to_string(getpid())});
-    if (with_server_)
-      arguments.insert(arguments.end(), {"--discovery", our_address + ":" + std::to_string(lock_->discovery_port())});
+    if (layout_.with_server())
+      arguments.insert(arguments.end(), {"--discovery", layout_.ServerAt(our_address)});
     else
       arguments.insert(arguments.end(), {"--peers-at", our_address});
     if (!host.address.empty()) arguments.insert(arguments.end(), {"--address", host.address});
     const std::string process = ProcessName(agents);
     job.processes.push_back(
-        {process, arguments, credentials_ ? ToText(credentials_->Issue(process, RankOf(process))) : ""});
+        {process, arguments, credentials_ ? ToText(credentials_->Issue(process, layout_.RankOf(process))) : ""});
     if (credentials_) peers_.Know(process, credentials_->KeyOf(process));
   }
   return job;
@@ -447,9 +332,9 @@ void DdsRun::Spawn() {
   const DomainOptions options = Options("", DiscoveryRole::kClient);
   std::vector<std::string> common{"--parent", std::to_string(getpid())};
   if (options.loopback) common.push_back("--loopback");
-  if (with_server_) common.insert(common.end(), {"--discovery", options.server});
+  if (layout_.with_server()) common.insert(common.end(), {"--discovery", options.server});
   console_.Line("DDS domain " + std::to_string(options.domain) +
-                (with_server_ ? ", discovery server " + options.server : ""));
+                (layout_.with_server() ? ", discovery server " + options.server : ""));
 
   const auto complete = [&common, this](const std::string& process, std::vector<std::string> arguments, int number,
                                         std::ptrdiff_t awaits) {
@@ -457,26 +342,27 @@ void DdsRun::Spawn() {
     const std::vector<std::string> credentials = CredentialsFor(process);
     arguments.insert(arguments.end(), credentials.begin(), credentials.end());
     arguments.insert(arguments.end(), {"--participant", std::to_string(number)});
-    if (!is_star_) return arguments;
-    arguments.insert(arguments.end(), {"--peers", fmt::format("{}", fmt::join(PeersOf(process), ",")), "--awaits",
-                                       std::to_string(awaits)});
+    if (!layout_.is_star()) return arguments;
+    arguments.insert(arguments.end(), {"--peers", fmt::format("{}", fmt::join(layout_.PeersOf(process), ",")),
+                                       "--awaits", std::to_string(awaits)});
     return arguments;
   };
   const pid_t server =
       children_.Spawn(kPhysicsServer, ProgramFolder() / "physics_server",
                       complete(kPhysicsServer, ArgumentsOf(experiment_, options.domain, options.participants),
-                               kServersNumber, ProcessesOn("") + 1),
+                               kNumberOfServer, layout_.ProcessesOn("") + 1),
                       folder_.Log(kPhysicsServer));
   peers_.Know(kPhysicsServer, KeyOf(kPhysicsServer, server));
   std::vector<Children::CopyOf> here;
-  for (const AgentRange& agents : processes_) {
+  for (const AgentRange& agents : layout_.processes()) {
     const AgentConfig& agent = experiment_.agent(agents.first);
     const std::string process = ProcessName(agents);
     if (!agent.external && agent.host.empty()) {
       const int number = kFirstAgents + static_cast<int>(here.size());
-      here.push_back({process,
-                      complete(process, ArgumentsOf(experiment_, options.domain, agents), number, 2 + MatesOf(agents)),
-                      folder_.Log(process)});
+      here.push_back(
+          {process,
+           complete(process, ArgumentsOf(experiment_, options.domain, agents), number, 2 + layout_.MatesOf(agents)),
+           folder_.Log(process)});
       continue;
     }
     if (!agent.external) {
@@ -487,7 +373,7 @@ void DdsRun::Spawn() {
     peers_.Await(process, credentials_ ? credentials_->KeyOf(process) : ProcessKey());
     by_hand_[process] = "agent --id " + IdsText(agents) + " --domain " + std::to_string(options.domain) +
                         (options.transport == DomainOptions().transport ? "" : " --transport " + options.transport) +
-                        (with_server_ ? " --discovery THIS-HOST:" + std::to_string(lock_->discovery_port()) : "") +
+                        (layout_.with_server() ? " --discovery " + layout_.ServerAt("THIS-HOST") : "") +
                         (credentials.empty() ? "" : " --credentials " + credentials.back());
     console_.Line("waiting for: " + by_hand_[process]);
   }
@@ -512,27 +398,6 @@ void DdsRun::Spawn() {
           .job = [this](const HostConfig& host, const std::string& our_address) { return JobOf(host, our_address); }},
       children_, logs_, peers_);
   launcher_->Start();
-}
-
-/// Bytes of /dev/shm that the processes of the run on a host take together; "": on this one.
-std::uint64_t DdsRun::SharedMemoryOf(const std::string& host) const {
-  DomainOptions options = Options("", DiscoveryRole::kPeer);
-  std::uint64_t need = host.empty() ? 2 * SharedMemoryNeeded(options) : 0;  // this process and the physics server
-  for (const AgentRange& agents : processes_) {
-    const AgentConfig& agent = experiment_.agent(agents.first);
-    if (agent.external || agent.host != host) continue;
-    options.participants = ParticipantsOfAgents(experiment_, agents);
-    need += SharedMemoryNeeded(options);
-  }
-  return need;
-}
-
-/// Processes of agents on a host; "": on this one.
-int DdsRun::ProcessesOn(const std::string& host) const {
-  return static_cast<int>(std::ranges::count_if(processes_, [&](const AgentRange& agents) {
-    const AgentConfig& agent = experiment_.agent(agents.first);
-    return !agent.external && agent.host == host;
-  }));
 }
 
 EngineResult DdsRun::Fly() {
@@ -650,7 +515,7 @@ bool DdsRun::HaveHeardAllFrom(AgentRange agents) const {
 /// process has sent and is not taken yet.
 void DdsRun::SayFarewell(const std::string& process) const {
   const auto participant = peers_.ParticipantOf(process);
-  if (participant && HostOf(process).empty()) SayFarewellFor(*participant, lock_->domain());
+  if (participant && layout_.HostOf(process).empty()) SayFarewellFor(*participant, lock_->domain());
 }
 
 /// Tells the physics server which agents have been lost, until an event says so.
@@ -692,8 +557,8 @@ void DdsRun::StartAfresh() {
   };
   std::vector<AgentRange> awaited;
   for (const std::uint32_t first : server->awaited()) {
-    const auto process = std::ranges::find(processes_, static_cast<int>(first), &AgentRange::first);
-    if (process != processes_.end() && !is_started(*process)) awaited.push_back(*process);
+    const auto process = std::ranges::find(layout_.processes(), static_cast<int>(first), &AgentRange::first);
+    if (process != layout_.processes().end() && !is_started(*process)) awaited.push_back(*process);
   }
   if (awaited.empty()) return;
   std::vector<mascot_msgs::msg::Event> events = recorder_->Events();
@@ -711,7 +576,8 @@ void DdsRun::StartAfresh(AgentRange agents, std::int64_t tick) {
   const std::string process = ProcessName(agents);
   const auto known = arguments_.find(process);
   if (known == arguments_.end())
-    throw std::runtime_error(fmt::format("{} cannot start afresh: this host has not started it", PlacedName(process)));
+    throw std::runtime_error(
+        fmt::format("{} cannot start afresh: this host has not started it", layout_.PlacedName(process)));
   Start& start = started_[agents];
   if (start.tick == tick && start.times == kMaxStarts)
     throw std::runtime_error(
@@ -724,10 +590,10 @@ void DdsRun::StartAfresh(AgentRange agents, std::int64_t tick) {
   // Not the number of a process before it, as long as there are others: with network.transport = "shm", others still
   // write into the memory behind the ports of that.
   *std::next(std::ranges::find(arguments, "--participant")) = std::to_string(next_number_);
-  next_number_ = next_number_ + 1 < kOwnNumber ? next_number_ + 1 : kFirstAgents;
+  next_number_ = next_number_ + 1 < kNumberOfOrchestrator ? next_number_ + 1 : kFirstAgents;
   if (credentials_)
     *std::next(std::ranges::find(arguments, "--credentials")) =
-        credentials_->Write(credentials_->Issue(process, RankOf(process))).string();
+        credentials_->Write(credentials_->Issue(process, layout_.RankOf(process))).string();
   arguments.insert(arguments.end(), {"--from-tick", std::to_string(tick)});
   peers_.Know(process, [&] {  // on a busy machine it may announce itself before we go on
     return KeyOf(process, children_.Spawn(process, ProgramFolder() / "agent", arguments,
@@ -897,7 +763,7 @@ void DdsRun::AwaitChildren() {
 /// They are not our children: waits until they have left the domain.
 void DdsRun::AwaitAgentsByHand() {
   const auto deadline = WallClock::now() + 2s;
-  while (external_ && links_ && links_->listeners() > 0 && WallClock::now() < deadline)
+  while (layout_.has_external() && links_ && links_->listeners() > 0 && WallClock::now() < deadline)
     std::this_thread::sleep_for(20ms);
 }
 
