@@ -1,17 +1,14 @@
 #include "bus/bus.h"
 
-#include <fastrtps/xmlparser/XMLProfileManager.h>
-
 #include <algorithm>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/topic/TopicDataType.hpp>
 #include <set>
 #include <utility>
 
 #include "bus/discoveries.h"
+#include "bus/raw_type.h"
 #include "bus/wire.h"
 #include "experiment/processes.h"
 
@@ -24,40 +21,11 @@ namespace dds = eprosima::fastdds::dds;
 using eprosima::fastrtps::rtps::SerializedPayload_t;
 using eprosima::fastrtps::types::ReturnCode_t;
 
-/// Takes ownership of an entity that Fast DDS created. Throws BusError if it is null.
-template <class Entity>
-Handle<Entity> Own(Entity* entity, const std::string& what, std::function<void(Entity*)> give_back) {
-  if (entity == nullptr) throw BusError("Fast DDS refused to make the " + what);
-  return Handle<Entity>(entity, std::move(give_back));
-}
-
 /// Without a new participant. Each time that there is one, all are told that we are there.
 constexpr auto kQuiet = 100ms;
 
 eprosima::fastrtps::Duration_t DurationOf(std::chrono::milliseconds time) {
   return eprosima::fastrtps::Duration_t(1e-3L * time.count());
-}
-
-/// Intraprocess delivery would call a reader's callback in the thread that writes, with the writer's locks held.
-void DisableIntraprocessDelivery() {
-  eprosima::fastrtps::LibrarySettingsAttributes settings;
-  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
-}
-
-/// Joins the domain. Throws BusError if Fast DDS refuses, and in words if it fails on the way: if it cannot start one
-/// of its threads, it joins it all the same, which is an "Invalid argument".
-dds::DomainParticipant* CreateParticipant(const DomainOptions& options, dds::DomainParticipantListener* discovery) try {
-  dds::DomainParticipantQos qos = ParticipantQos(options);
-  std::optional<Enclave> enclave;
-  if (options.credentials != nullptr) enclave.emplace(*options.credentials).Secure(qos);
-  return dds::DomainParticipantFactory::get_instance()->create_participant(static_cast<dds::DomainId_t>(options.domain),
-                                                                           qos, discovery, dds::StatusMask::none());
-} catch (const std::invalid_argument&) {
-  throw;
-} catch (const std::exception& failure) {
-  throw BusError("Fast DDS failed to join domain " + std::to_string(options.domain) + " (" + failure.what() +
-                 "); is there a limit of memory or threads, such as ulimit -v or -u?");
 }
 
 }  // namespace
@@ -71,18 +39,9 @@ Domain::Domain(const DomainOptions& options, std::function<void()> wake, Peers* 
       secure_(options.credentials != nullptr),
       redelivery_(options.loopback ? Redelivery::kSeldom : Redelivery::kOften),
       discoveries_(std::make_unique<Discoveries>([this] { Wake(); }, discovery, secure_)) {
-  DisableIntraprocessDelivery();
-  participant_ =
-      Own<dds::DomainParticipant>(CreateParticipant(options, discoveries_.get()),
-                                  "participant in domain " + std::to_string(options.domain), [](auto* participant) {
-                                    participant->set_listener(nullptr);
-                                    dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
-                                  });
-  auto* participant = participant_.get();
-  publisher_ = Own<dds::Publisher>(participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher",
-                                   [participant](auto* publisher) { participant->delete_publisher(publisher); });
-  subscriber_ = Own<dds::Subscriber>(participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber",
-                                     [participant](auto* subscriber) { participant->delete_subscriber(subscriber); });
+  participant_ = Join(options, discoveries_.get());
+  publisher_ = PublisherOf(*participant_);
+  subscriber_ = SubscriberOf(*participant_);
 }
 
 Domain::~Domain() = default;
@@ -337,39 +296,6 @@ void ThrowNoSample(const Topic& topic, std::size_t bytes, const std::string& typ
 }
 
 // --- raw bytes ----------------------------------------------------------------------------------------
-
-namespace {
-
-/// Has the name of a generated type, so that it matches that type's readers and writers, but keeps the bytes as they
-/// are.
-class RawType : public dds::TopicDataType {
- public:
-  explicit RawType(const std::string& name) {
-    setName(name.c_str());
-    m_typeSize = 256;  // a first guess for preallocation; histories grow with what comes
-    m_isGetKeyDefined = false;
-  }
-  bool serialize(void* data, SerializedPayload_t* payload) override {
-    const auto& bytes = *static_cast<ReaderBase::Bytes*>(data);
-    if (bytes.size() > payload->max_size) return false;
-    std::ranges::copy(bytes, payload->data);
-    payload->length = static_cast<std::uint32_t>(bytes.size());
-    payload->encapsulation = CDR_LE;
-    return true;
-  }
-  bool deserialize(SerializedPayload_t* payload, void* data) override {
-    static_cast<ReaderBase::Bytes*>(data)->assign(payload->data, payload->data + payload->length);
-    return true;
-  }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] { return static_cast<std::uint32_t>(static_cast<ReaderBase::Bytes*>(data)->size()); };
-  }
-  void* createData() override { return new ReaderBase::Bytes; }
-  void deleteData(void* data) override { delete static_cast<ReaderBase::Bytes*>(data); }
-  bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
-};
-
-}  // namespace
 
 RawReader::RawReader(Domain& domain, const Topic& topic, OnBytes on_sample, Redelivery redelivery)
     : ReaderBase(domain, topic, dds::TypeSupport(new RawType(WireTypeName(topic.kind))), RecorderQos(topic, redelivery),

@@ -15,11 +15,11 @@
 #include <memory>
 #include <mutex>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bus/cdr.h"
+#include "bus/participant.h"
 #include "bus/peers.h"
 #include "bus/qos.h"
 #include "experiment/experiment.h"
@@ -28,16 +28,6 @@
 namespace mascot {
 
 class Discoveries;
-
-/// Fast DDS refused to create an entity or to send a sample.
-class BusError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Owns one Fast DDS entity and deletes it through the parent that created it.
-template <class Entity>
-using Handle = std::unique_ptr<Entity, std::function<void(Entity*)>>;
 
 /// A process's participant, publisher and subscriber in the DDS domain of a run. Must outlive every reader and writer
 /// made in it. With credentials, only participants that have authenticated themselves count as discovered.

@@ -20,6 +20,8 @@ bool MayWrite(std::string_view process, const Topic& topic) {
       return process == kOrchestrator || process == kPhysicsServer;
     case TopicWriter::kEverybody:
       return true;
+    case TopicWriter::kVehicle:
+      return VehicleOf(process) == topic.agent;
   }
   return false;
 }

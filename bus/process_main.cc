@@ -109,7 +109,7 @@ class Refusals {
 /// Domain::AwaitOthers(); the physics server is looked for. Returns a signal that came, or 0.
 int AwaitOthers(Domain& domain, int others, const ProcessArgs& args, StopSignal& stop) {
   int signal = 0;
-  domain.AwaitOthers(others, /*announces=*/!args.is_agent,
+  domain.AwaitOthers(others, /*announces=*/!args.is_agent(),
                      [&](std::chrono::nanoseconds time) { return (signal = stop.Within(time)) == 0; });
   return signal;
 }
@@ -205,6 +205,18 @@ std::optional<int> RefuseIfNotAwaited(const ProcessArgs& args, PlacesOfTheRun& r
   return code;
 }
 
+std::string NameOf(const ProcessArgs& args) {
+  switch (args.kind) {
+    case ProcessArgs::Kind::kServer:
+      return kPhysicsServer;
+    case ProcessArgs::Kind::kAgents:
+      return ProcessName(args.agents);
+    case ProcessArgs::Kind::kVehicle:
+      return VehicleName(args.agents.first);
+  }
+  throw std::logic_error("a process of no kind");
+}
+
 /// The run does not wait for an agent that was started by hand.
 class NotAwaited : public std::runtime_error {
  public:
@@ -240,7 +252,7 @@ void TakeCredentials(ProcessArgs& args) {
   auto credentials = CredentialsIn(args.credentials_file);
   if (args.parent != 0) {
     std::filesystem::remove(args.credentials_file);
-    if (args.is_agent) args.turns = std::filesystem::path(args.credentials_file).parent_path();
+    if (args.is_agent()) args.turns = std::filesystem::path(args.credentials_file).parent_path();
   }
   if (credentials->process != args.options.name)
     throw std::invalid_argument("--credentials: expected those of " + args.options.name + ", got those of " +
@@ -301,7 +313,7 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
   } catch (const std::exception& failure) {
     Leave(args, kTimeToDeliver + kTimeToReport + kTimeToLeave, code);
     std::cerr << "error: " << InWords(failure) << std::endl;
-    if (args.is_agent) domain.AwaitReaders(kTimeToDeliver);
+    if (args.is_agent()) domain.AwaitReaders(kTimeToDeliver);
     lifecycle.SetFinal(Life::kFailed, InWords(failure));
   }
   if (experiment) KillDescendants();  // of laws: without an experiment none has run
@@ -312,12 +324,12 @@ int Join(const ProcessArgs& args, StopSignal& stop, const RoleFactory& make_role
 }  // namespace
 
 void ProcessArgs::AddTo(CLI::App& app) {
-  if (is_agent)
+  if (kind != Kind::kServer)
     app.add_option_function<std::string>(
            "--id", [this](const std::string& text) { agents = ParseIds(text); },
            "This agent's number, 1..N, or those of all agents that share this process: 1-50")
         ->required();
-  if (is_agent)
+  if (is_agent())
     app.add_flag("--no-code", no_code,
                  "Refuse laws of users: fly no code that comes with the experiment, or that it names");
   app.add_option("--domain", options.domain, "DDS domain of the run; `orchestrator up` prints it")
@@ -369,7 +381,7 @@ int ProcessMain(CLI::App& app, int argc, char** argv, ProcessArgs& args, StopSig
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // what a law starts is no process of the run (Janitor)
   // This process may be stopped, or hang in a law or in Fast DDS, when the orchestrator dies; the Janitor sweeps.
   if (args.parent != 0 && !DieWith(args.parent)) return 1;
-  args.options.name = args.is_agent ? ProcessName(args.agents) : kPhysicsServer;
+  args.options.name = NameOf(args);
   if (!args.options.server.empty()) args.options.role = DiscoveryRole::kClient;
   try {
     TakeCredentials(args);

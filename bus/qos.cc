@@ -46,9 +46,9 @@ void SetCommon(Qos& qos, const TopicTraits& traits, int depth, Redelivery redeli
 /// readers, hundreds in the recorder's process.
 std::int16_t ReaderNumber(const Topic& topic) {
   constexpr int kFirst = 256;    // smaller ids are those that Fast DDS picks
-  constexpr int kAgents = 4600;  // seven kinds of topics have agents, and are the first of TopicKind
+  constexpr int kAgents = 4600;  // those of seven kinds, the first of TopicKind; vehicles are few
   static_assert(static_cast<int>(TopicKind::kState) == 6 && kFirst + 7 * kAgents < 32768);
-  const bool of_agents = topic.agent > 0 && topic.agent < kAgents;
+  const bool of_agents = topic.agent > 0 && topic.agent < kAgents && topic.kind <= TopicKind::kState;
   if (!of_agents) return -1;
   return static_cast<std::int16_t>(kFirst + kAgents * static_cast<int>(topic.kind) + topic.agent);
 }

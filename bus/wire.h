@@ -28,6 +28,7 @@ using EventType = mascot_msgs::msg::EventPubSubType;
 using StatusType = mascot_msgs::msg::StatusPubSubType;
 using RequestType = mascot_msgs::msg::RequestPubSubType;
 using ExperimentType = mascot_msgs::msg::ExperimentPubSubType;
+using VehicleStatusType = mascot_msgs::msg::VehicleStatusPubSubType;
 
 // Where the sequence of a type begins in its bytes, and how many bytes an element has at least (bus/cdr.h).
 template <>
@@ -53,7 +54,20 @@ constexpr bool IsLast(Life life) { return life >= Life::kDone; }
 /// last_tick + 1. `last_tick` is the last tick of the run.
 Life CheckedLife(const mascot_msgs::msg::Status& status, std::int64_t last_tick);
 /// Values of Request::kind: what the orchestrator asks of a process.
-enum class Ask : std::uint8_t { kReport = 0, kStop, kEnd, kPause, kResume, kStep, kPace, kEvent, kLose };
+enum class Ask : std::uint8_t {
+  kReport = 0,
+  kStop,
+  kEnd,
+  kPause,
+  kResume,
+  kStep,
+  kPace,
+  kEvent,
+  kLose,
+  kStart,
+  kLand,
+  kStopMotors
+};
 /// Values of Status::request_tick for a request that took effect at no tick: kOver, the run was over; kTooLate, an
 /// event came too late.
 inline constexpr std::int64_t kOver = -1, kTooLate = -2;

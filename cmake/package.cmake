@@ -4,7 +4,7 @@
 set(man_pages ${PROJECT_BINARY_DIR}/man)
 add_custom_target(man_pages
   COMMAND ${PROJECT_SOURCE_DIR}/scripts/man_pages ${PROJECT_BINARY_DIR} ${man_pages}
-  DEPENDS orchestrator agent physics_server
+  DEPENDS orchestrator agent physics_server vehicle
   COMMENT "Making manual pages")
 foreach(section 1 5)
   install(DIRECTORY ${man_pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section} OPTIONAL

@@ -5,7 +5,7 @@ import hashlib
 import pathlib
 import sys
 
-FOLDERS = ["agent", "base", "bus", "cmake", "experiment", "idl", "orchestrator", "physics_server", "system"]
+FOLDERS = ["agent", "base", "bus", "cmake", "experiment", "idl", "orchestrator", "physics_server", "system", "vehicle"]
 KINDS = {".cc", ".cmake", ".h", ".idl", ".msg", ".py"}
 
 

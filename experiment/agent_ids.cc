@@ -3,9 +3,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
+#include "base/number.h"
+
 namespace mascot {
+namespace {
+
+std::optional<int> ToId(std::string_view text) {
+  const auto id = NumberFrom<int>(text);
+  return id > 0 ? id : std::nullopt;
+}
+
+/// "1-20" or "1-5,8"; nothing if it is not that, with agents up to `most`.
+std::optional<std::vector<AgentRange>> ToRanges(std::string_view text, int most) {
+  std::vector<AgentRange> ranges;
+  for (bool more = true; more;) {
+    const std::size_t comma = text.find(',');
+    const std::string_view part = text.substr(0, comma);
+    more = comma != text.npos;
+    text.remove_prefix(more ? comma + 1 : text.size());
+    const std::size_t dash = part.find('-');
+    const auto first = ToId(part.substr(0, dash)), last = dash == part.npos ? first : ToId(part.substr(dash + 1));
+    if (!first || !last || *first > *last || *last > most) return std::nullopt;
+    ranges.push_back({*first, *last});
+  }
+  return ranges;
+}
+
+}  // namespace
 
 std::vector<int> ReadAgentIds(Section& section, const std::string& key, int agents) {
   std::vector<int> ids;
@@ -24,6 +51,14 @@ std::vector<int> ReadAgentIds(Section& section, const std::string& key, int agen
   if (numbers.empty() && !section.Wrong(key)) section.Fail(key, "expected a list of agents, got nothing");
   std::ranges::sort(ids);
   return ids;
+}
+
+std::vector<AgentRange> ReadAgentRanges(Section& section, const std::string& key, int most) {
+  const std::string words = section.Text(key);
+  if (section.Wrong(key)) return {};
+  if (auto ranges = ToRanges(words, most)) return *std::move(ranges);
+  section.Fail(key, fmt::format("expected agents in 1..{}, such as \"1-20\" or \"1-5,8\", got '{}'", most, words));
+  return {};
 }
 
 std::string IdRanges(const std::vector<int>& ids) {

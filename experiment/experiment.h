@@ -23,6 +23,7 @@
 #include "experiment/physics.h"
 #include "experiment/safety.h"
 #include "experiment/sensors.h"
+#include "experiment/vehicles.h"
 
 namespace mascot {
 
@@ -128,7 +129,8 @@ struct AgentConfig {
   bool external = false;                    ///< the agent is started by hand, and the run waits for it
   std::string host = {};                    ///< name of one of Experiment::hosts; empty: the host of the physics server
   std::optional<FalseDataConfig> lie = {};  ///< absent: the agent tells the truth
-  AgentFaults faults = {};                  ///< what events have done to the agent
+  std::optional<VehicleConfig> vehicle = {};  ///< absent: its body is simulated
+  AgentFaults faults = {};                    ///< what events have done to the agent
 
   const ModelTraits& traits() const { return TraitsOf(model); }
   /// Full lengths of the agent's collision shape along the axes of B (m).

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <set>
 #include <string_view>
 
 #include "base/number.h"
+#include "experiment/agent_ids.h"
 #include "experiment/experiment.h"
 #include "experiment/toml/few_tables.h"
 
@@ -25,38 +25,6 @@ bool IsHostName(const std::string& name) {
            return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
                   kOthers.find(c) != kOthers.npos;
          });
-}
-
-/// Whether it is an IPv4 address: 192.168.1.11.
-bool IsAddress(std::string_view text) {
-  constexpr int kParts = 4;
-  for (int part = 0; part < kParts; ++part) {
-    const std::size_t dot = std::min(text.find('.'), text.size());
-    if (!NumberFrom<std::uint8_t>(text.substr(0, dot)) || (dot == text.size()) != (part == kParts - 1)) return false;
-    text.remove_prefix(std::min(dot + 1, text.size()));
-  }
-  return true;
-}
-
-std::optional<int> ToId(std::string_view text) {
-  const auto id = NumberFrom<int>(text);
-  return id > 0 ? id : std::nullopt;
-}
-
-/// "1-20" or "1-5,8"; nothing if it is not that, with agents up to `most`.
-std::optional<std::vector<AgentRange>> ToRanges(std::string_view text, int most) {
-  std::vector<AgentRange> ranges;
-  for (bool more = true; more;) {
-    const std::size_t comma = text.find(',');
-    const std::string_view part = text.substr(0, comma);
-    more = comma != text.npos;
-    text.remove_prefix(more ? comma + 1 : text.size());
-    const std::size_t dash = part.find('-');
-    const auto first = ToId(part.substr(0, dash)), last = dash == part.npos ? first : ToId(part.substr(dash + 1));
-    if (!first || !last || *first > *last || *last > most) return std::nullopt;
-    ranges.push_back({*first, *last});
-  }
-  return ranges;
 }
 
 /// Notes at each agent that it is on `host`.
@@ -82,17 +50,9 @@ HostConfig ReadHost(Section& section, std::vector<AgentConfig>& agents, std::set
     section.Fail("name", "expected a host name, got '" + host.name + "'");
   else if (!section.Wrong("name") && !names.insert(host.name).second)
     section.Fail("name", EachOnce("host", host.name));
-  const std::string words = section.Text("agents");
   const int most = agents.empty() ? static_cast<int>(kMaxAgents) : static_cast<int>(agents.size());
-  if (!section.Wrong("agents")) {
-    if (const auto ranges = ToRanges(words, most)) {
-      host.agents = *ranges;
-      if (!agents.empty()) Place(section, host, agents);
-    } else {
-      section.Fail("agents",
-                   fmt::format("expected agents in 1..{}, such as \"1-20\" or \"1-5,8\", got '{}'", most, words));
-    }
-  }
+  host.agents = ReadAgentRanges(section, "agents", most);
+  if (!agents.empty()) Place(section, host, agents);
   host.launch =
       section.Texts("launch", std::vector<std::string>{"ssh", "-oBatchMode=yes", "-oConnectTimeout=10", host.name});
   if (!section.Wrong("launch") && (host.launch.empty() || host.launch.front().empty()))
@@ -107,6 +67,16 @@ HostConfig ReadHost(Section& section, std::vector<AgentConfig>& agents, std::set
 }
 
 }  // namespace
+
+bool IsAddress(std::string_view text) {
+  constexpr int kParts = 4;
+  for (int part = 0; part < kParts; ++part) {
+    const std::size_t dot = std::min(text.find('.'), text.size());
+    if (!NumberFrom<std::uint8_t>(text.substr(0, dot)) || (dot == text.size()) != (part == kParts - 1)) return false;
+    text.remove_prefix(std::min(dot + 1, text.size()));
+  }
+  return true;
+}
 
 std::span<const Key> HostKeys() {
   static const Key keys[] = {

@@ -30,4 +30,7 @@ std::span<const Key> HostKeys();
 /// unknown. Mistakes are noted in `document`.
 std::vector<HostConfig> ReadHosts(Section& document, std::vector<AgentConfig>& agents);
 
+/// Whether a text is an IPv4 address.
+bool IsAddress(std::string_view text);
+
 }  // namespace mascot

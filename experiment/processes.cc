@@ -33,8 +33,9 @@ std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only)
 }
 
 std::string TransportOf(const Experiment& experiment) {
-  const bool outlives_agents = experiment.run.on_agent_loss != OnAgentLoss::kAbort;
-  return experiment.network.transport == "auto" && outlives_agents ? "udp" : experiment.network.transport;
+  const bool outlives_processes =
+      experiment.run.on_agent_loss != OnAgentLoss::kAbort || !AgentsWithVehicles(experiment).empty();
+  return experiment.network.transport == "auto" && outlives_processes ? "udp" : experiment.network.transport;
 }
 
 bool AsksAgain(const Experiment& experiment) {

@@ -16,8 +16,8 @@ std::vector<AgentRange> AgentProcesses(const Experiment& experiment);
 std::vector<int> HearingProcesses(const Experiment& experiment, bool heard_only);
 
 /// How the processes of a run exchange samples: network.transport, but "udp" in place of "auto" if the run outlives
-/// agents. In shared memory, a process that is killed while it sends may leave a queue locked, or with a place in it
-/// that is taken and never filled, and whose queue that is hears nothing more.
+/// agents, or has vehicles to bring down. In shared memory, a process that is killed while it sends may leave a queue
+/// locked, or with a place in it that is taken and never filled, and whose queue that is hears nothing more.
 std::string TransportOf(const Experiment& experiment);
 /// Whether the server asks again for answers that do not come, so that bundles and answers need no other care: in
 /// lockstep, if the run has started all processes of agents, on this host, where they share memory.

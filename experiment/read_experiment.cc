@@ -301,6 +301,7 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
   experiment.hosts = ReadHosts(document, experiment.agents);
   if (!experiment.hosts.empty() && experiment.network.transport == "shm")
     network.Fail("transport", "expected \"auto\" or \"udp\", which reach other hosts, got \"shm\"");
+  ReadVehicles(document, run, experiment);
 
   // With a wrong graph or law, the checks of law parameters would only report the same mistake again.
   if (graph.Wrong("")) {
@@ -397,6 +398,8 @@ std::span<const Key> ExperimentKeys() {
       key::Tables(
           "hosts", HostKeys(),
           "machines on which some of the agents run, besides the one where `up` runs; see [hosts.md](hosts.md)"),
+      key::Tables("vehicles", VehicleKeys(),
+                  "agents whose bodies are real vehicles, flown in real time; see [vehicles.md](vehicles.md)"),
       key::Tables("events", EventKeys(), "what changes while the run goes on; at most 100000"),
   };
   return keys;

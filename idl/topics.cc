@@ -135,9 +135,27 @@ constexpr TopicTraits kKinds[] = {
      .reader_depth = 10,
      .is_large = true,
      .is_for_ros = true},
+    {.kind = TopicKind::kMeasured,
+     .name = "measured",
+     .per_agent = true,
+     .type = "mascot_msgs/msg/AgentState",
+     .writer = TopicWriter::kVehicle,
+     .rhythm = TopicRhythm::kTick,
+     .writer_depth = 1,
+     .reader_depth = 1},
+    {.kind = TopicKind::kVehicle,
+     .name = "vehicle",
+     .per_agent = true,
+     .type = "mascot_msgs/msg/VehicleStatus",
+     .writer = TopicWriter::kVehicle,
+     .rhythm = TopicRhythm::kRare,
+     .writer_depth = 64,
+     .reader_depth = 64,
+     .for_late_joiners = true},
 };
 constexpr std::string_view kAgentPrefix = "agent_";
 constexpr std::string_view kAgentsPrefix = "agents_";
+constexpr std::string_view kVehiclePrefix = "vehicle_";
 
 /// All of `text` as the number of an agent, 1 or more, as we write it: without sign and leading zeros.
 std::optional<int> Number(std::string_view text) {
@@ -145,9 +163,10 @@ std::optional<int> Number(std::string_view text) {
   return number >= 1 && text.front() != '0' ? number : std::nullopt;
 }
 
-std::optional<int> AgentNumber(std::string_view name) {
-  if (!name.starts_with(kAgentPrefix)) return std::nullopt;
-  name.remove_prefix(kAgentPrefix.size());
+/// The number of an agent behind a prefix.
+std::optional<int> NumberBehind(std::string_view prefix, std::string_view name) {
+  if (!name.starts_with(prefix)) return std::nullopt;
+  name.remove_prefix(prefix.size());
   return name.empty() ? std::nullopt : Number(name);
 }
 
@@ -161,7 +180,7 @@ std::string ProcessName(AgentRange agents) {
 }
 
 std::optional<AgentRange> AgentsOf(std::string_view process) {
-  if (const auto agent = AgentNumber(process)) return AgentRange{*agent, *agent};
+  if (const auto agent = NumberBehind(kAgentPrefix, process)) return AgentRange{*agent, *agent};
   const auto dash = process.find('-');
   if (!process.starts_with(kAgentsPrefix) || dash == process.npos || dash == kAgentsPrefix.size() ||
       dash + 1 == process.size())
@@ -170,6 +189,10 @@ std::optional<AgentRange> AgentsOf(std::string_view process) {
   const auto last = Number(process.substr(dash + 1));
   return first && last && *first < *last ? std::optional(AgentRange{*first, *last}) : std::nullopt;
 }
+
+std::string VehicleName(int agent) { return std::string(kVehiclePrefix) + std::to_string(agent); }
+
+std::optional<int> VehicleOf(std::string_view process) { return NumberBehind(kVehiclePrefix, process); }
 
 const TopicTraits& TraitsOf(TopicKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
 

@@ -16,7 +16,13 @@ std::string ProcessName(AgentRange agents);
 /// The inverse of ProcessName(); nullopt for other names.
 std::optional<AgentRange> AgentsOf(std::string_view process);
 
-/// What a topic carries. In a recording the topics of one agent are in this order, which is that of their names.
+/// Name of the process of an agent's vehicle: "vehicle_3".
+std::string VehicleName(int agent);
+/// The inverse of VehicleName(); nullopt for other names.
+std::optional<int> VehicleOf(std::string_view process);
+
+/// What a topic carries. In a recording the topics of one agent are in this order, which is that of their names; those
+/// of vehicles, which are not recorded, come last.
 enum class TopicKind {
   kAction,
   kAnswers,
@@ -32,7 +38,9 @@ enum class TopicKind {
   kRow,
   kScene,
   kStatus,
-  kTf
+  kTf,
+  kMeasured,
+  kVehicle
 };
 
 /// Which process may write a topic.
@@ -42,6 +50,7 @@ enum class TopicWriter {
   kOrchestrator,          ///< the orchestrator
   kOrchestratorOrServer,  ///< both: the server asks for reports
   kEverybody,             ///< each process of the run
+  kVehicle,               ///< the process of the vehicle of the agent that the topic is named after
 };
 
 /// When a topic has a sample.
@@ -101,6 +110,8 @@ struct Topic {
   static Topic Scene() { return {TopicKind::kScene, 0}; }
   static Topic Status() { return {TopicKind::kStatus, 0}; }
   static Topic Tf() { return {TopicKind::kTf, 0}; }
+  static Topic Measured(int agent) { return {TopicKind::kMeasured, agent}; }
+  static Topic Vehicle(int agent) { return {TopicKind::kVehicle, agent}; }
 
   const TopicTraits& traits() const { return TraitsOf(kind); }
   /// The agents of a topic of a per-process kind.

@@ -7,7 +7,7 @@ namespace mascot {
 
 using ModelFactory = std::unique_ptr<Model>(const Experiment& experiment, int id);
 // Defined in physics_server/models/<name>.cc.
-ModelFactory MakeQuadrotor, MakeDoubleIntegrator, MakeSingleIntegrator, MakeUnicycle;
+ModelFactory MakeQuadrotor, MakeDoubleIntegrator, MakeSingleIntegrator, MakeUnicycle, MakeMovedBody;
 
 namespace {
 
@@ -26,6 +26,7 @@ constexpr ModelEntry kModels[] = {
 }  // namespace
 
 std::unique_ptr<Model> MakeModel(const Experiment& experiment, int id) {
+  if (experiment.agent(id).vehicle) return MakeMovedBody(experiment, id);
   const std::string& name = experiment.agent(id).model;
   const ModelEntry* entry = std::ranges::find(kModels, name, &ModelEntry::model);
   if (entry == std::end(kModels)) throw std::invalid_argument("no such model: " + name);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -18,6 +19,7 @@
 #include "physics_server/bullet/body.h"
 #include "physics_server/bullet/body_in_lanes.h"
 #include "physics_server/bullet/contact_counter.h"
+#include "physics_server/bullet/conversions.h"
 #include "physics_server/bullet/scene.h"
 #include "physics_server/clearance.h"
 #include "physics_server/faulty_motors.h"
@@ -50,6 +52,9 @@ void CheckFinite(std::span<const Actuation> commands, std::int64_t tick) {
 
 }  // namespace
 
+/// Beyond it a body that is moved from outside jumps.
+constexpr double kMaxMoveSpeed_m_per_s = 50;
+
 /// What flies a body, and has its numbers.
 enum class By { kBullet, kItself, kLanes };
 
@@ -66,6 +71,8 @@ struct World::Impl {
   void FlyAlone(Body& body, const Actuation& command, int steps);
   void FlyInLanes(std::span<const Actuation> commands, std::size_t first_block, std::size_t end_block);
   void EndTick(std::size_t i);
+  std::span<const Actuation> WithMoves(std::span<const Actuation> commands);
+  void EndMove(std::size_t i, Motion& now);
   Surroundings Around(int step) const;
 
   Crew& crew;
@@ -82,9 +89,11 @@ struct World::Impl {
   std::int64_t steps_with_contacts = 0;
 
   std::vector<Body> bodies;
-  Scene scene;                      // after the bodies that it holds
-  std::vector<By> by;               // body
-  std::vector<char> is_in_contact;  // by body: Bullet keeps contact points for it
+  std::map<std::size_t, Motion> moves;  // by body that is moved from outside: where it is at the end of the next tick
+  std::vector<Actuation> with_moves;    // commands, and the velocities of these bodies
+  Scene scene;                          // after the bodies that it holds
+  std::vector<By> by;                   // body
+  std::vector<char> is_in_contact;      // by body: Bullet keeps contact points for it
   std::vector<std::size_t> by_bullet;
   double max_wind_m_per_s = 0;  // in this tick
 
@@ -115,6 +124,7 @@ World::Impl::Impl(const Experiment& experiment, LookForContacts look_for_contact
   bodies.reserve(experiment.agents.size());
   for (const AgentConfig& agent : experiment.agents) {
     Body& body = bodies.emplace_back(MakeBody(experiment, agent));
+    if (agent.vehicle) moves.emplace(bodies.size() - 1, body.state);
     what_touches.can_touch_floor.push_back(experiment.physics.ground && body.model->touches_ground());
   }
   clearance.emplace(std::move(what_touches));
@@ -270,8 +280,30 @@ void World::Impl::FlyInLanes(std::span<const Actuation> commands, std::size_t fi
   rotor_bodies->Fly({.dt_s = dt_s, .wind_W = wind_W}, first_block, end_block);
 }
 
+/// The commands, but for bodies that are moved from outside the velocities that take them to their next places.
+std::span<const Actuation> World::Impl::WithMoves(std::span<const Actuation> commands) {
+  if (moves.empty()) return commands;
+  with_moves.assign(commands.begin(), commands.end());
+  for (const auto& [i, to] : moves) {
+    Eigen::Vector3d v_W = (to.p_WB - bodies[i].state.p_WB) * control_rate_hz;
+    if (v_W.norm() > kMaxMoveSpeed_m_per_s)
+      v_W.setZero();  // it was not heard for long: it does not hit what is between
+    with_moves[i] = {v_W.x(), v_W.y(), v_W.z(), 0};
+  }
+  return with_moves;
+}
+
+/// Puts a body that is moved from outside exactly where it is.
+void World::Impl::EndMove(std::size_t i, Motion& now) {
+  const auto move = moves.find(i);
+  if (move == moves.end()) return;
+  now = move->second;
+  bodies[i].rigid->setWorldTransform(btTransform(ToBullet(now.q_WB), ToBullet(now.p_WB)));
+}
+
 void World::Impl::EndTick(std::size_t i) {
   Motion now = by[i] == By::kLanes ? Now(*rotor_bodies, lane_of[i]) : Now(*bodies[i].rigid);
+  EndMove(i, now);
   Motion& state = bodies[i].state;
   if (!IsFinite(now)) throw std::runtime_error(At(tick + 1, i) + "its state is not finite");
   if (now.q_WB.dot(state.q_WB) < 0) now.q_WB.coeffs() *= -1;  // q and -q are the same rotation: take the nearer one
@@ -293,8 +325,16 @@ Motion World::State(int id) const { return impl_->bodies[static_cast<std::size_t
 void World::Step(std::span<const Actuation> commands) {
   if (commands.size() != impl_->bodies.size()) throw std::invalid_argument("World::Step: one command per agent");
   CheckFinite(commands, impl_->tick);
-  impl_->Tick(impl_->motors.CarriedOut(impl_->tick, commands));
+  impl_->Tick(impl_->WithMoves(impl_->motors.CarriedOut(impl_->tick, commands)));
 }
+
+void World::Place(int id, const Motion& at) {
+  Move(id, at);
+  const auto i = static_cast<std::size_t>(id - 1);
+  impl_->EndMove(i, impl_->bodies[i].state);
+}
+
+void World::Move(int id, const Motion& to) { impl_->moves.at(static_cast<std::size_t>(id - 1)) = to; }
 
 std::int64_t World::tick() const { return impl_->tick; }
 

@@ -37,6 +37,12 @@ class World {
   /// motors carry it out (FaultyMotors). Throws std::runtime_error naming agent and tick if a command or a resulting
   /// state is not finite, std::invalid_argument if there is not one command per agent.
   void Step(std::span<const Actuation> commands);
+  /// Where the body of an agent that is a vehicle (AgentConfig::vehicle) is at the end of the next Step(): it has
+  /// moved there along a straight line, whatever its command is. Without a new place it stays where it is. a_WB is not
+  /// looked at.
+  void Move(int id, const Motion& to);
+  /// Puts the body of an agent with a vehicle there at once: before the first tick.
+  void Place(int id, const Motion& at);
   /// The current tick: 0, then one more after each Step().
   std::int64_t tick() const;
   /// Contacts begun so far.

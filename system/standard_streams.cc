@@ -89,6 +89,8 @@ void FitStandardStreams() {
   if (fit_output != nullptr && fit_errors == nullptr) fit_errors = Fit(std::cerr);
 }
 
+bool IsInputATerminal() { return isatty(STDIN_FILENO) != 0; }
+
 void PrintToTerminal(std::string_view bytes) {
   if (fit_errors == nullptr)
     std::cerr << bytes << std::flush;

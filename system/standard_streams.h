@@ -13,6 +13,9 @@ void OpenStandardStreams();
 /// JSON that is printed stays the same JSON.
 void FitStandardStreams();
 
+/// Whether stdin is a terminal, at which somebody may answer.
+bool IsInputATerminal();
+
 /// Prints to std::cerr without the change of FitStandardStreams(): colours, cursor movements and text that is safe
 /// already.
 void PrintToTerminal(std::string_view bytes);

@@ -17,7 +17,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LIMIT_S = 240  # of a command; ctest ends the test after 300 s, without a word
 DOCUMENT = "docs/architecture.md"
-FOLDERS = ["base", "system", "experiment", "idl", "bus", "agent", "physics_server", "python", "orchestrator"]
+FOLDERS = ["base", "system", "experiment", "idl", "bus", "agent", "physics_server", "vehicle", "python", "orchestrator"]
 CPP = {".h", ".hpp", ".cc", ".cpp", ".inc"}
 
 Room = collections.namedtuple("Room", "line floor name patterns library may_use")

@@ -50,7 +50,7 @@ def processes():
         except OSError:
             continue
         name = pathlib.Path(words[0].decode()).name
-        if name in ("orchestrator", "physics_server", "agent", "janitor"):
+        if name in ("orchestrator", "physics_server", "agent", "vehicle", "janitor"):
             found[int(folder.name)] = name
     return found
 

@@ -117,7 +117,7 @@ class CommandLine(unittest.TestCase):
 
     def test_it_has_the_options_of_the_programs_that_a_run_starts(self):
         section = self.PAGE.partition("## The programs that a run starts")[2]
-        told = set().union(*(names(output_of(BUILD / program, "--help"), "Options") for program in ("agent", "physics_server")))
+        told = set().union(*(names(output_of(BUILD / program, "--help"), "Options") for program in ("agent", "physics_server", "vehicle")))
         self.assertEqual(set(options_of(section)), told - {"-h,--help"})
 
     def test_pages_name_no_verb_and_no_option_that_is_not_there(self):
@@ -275,7 +275,7 @@ def is_newer(path):
 class ManualPages(unittest.TestCase):
     def test_there_is_one_of_each_verb_and_program(self):
         pages = {path.name for path in (BUILD / "man").iterdir()}
-        self.assertEqual(pages, {f"{name}.1.gz" for name in ["orchestrator", "agent", "physics_server",
+        self.assertEqual(pages, {f"{name}.1.gz" for name in ["orchestrator", "agent", "physics_server", "vehicle",
                                                               *(f"orchestrator-{verb}" for verb in HELPS.verbs)]} |
                          {"mascot.toml.5.gz"})
 
@@ -309,7 +309,7 @@ def packaged_files():
     words = " ".join(re.findall(r"install\((?:FILES|PROGRAMS|DIRECTORY) ([^)]*?)\s+DESTINATION",
                                 "".join(maker.read_text() for maker in makers))).split()
     named = [ROOT / word for word in words if "$" not in word]
-    programs = [BUILD / name for name in ("orchestrator", "agent", "physics_server", "team_fmu.so")]
+    programs = [BUILD / name for name in ("orchestrator", "agent", "physics_server", "vehicle", "team_fmu.so")]
     return [file for path in (*makers, *programs, BUILD / "man", *named) for file in files_in(path)]
 
 
@@ -365,7 +365,7 @@ class Package(unittest.TestCase):
         there = lambda folder, paths: {f"{folder}/{path}" for path in paths}
         tree = lambda start, pattern: [path.relative_to(ROOT / start).as_posix() for path in (ROOT / start).rglob(pattern)]
         for expected in [
-                there("usr/bin", ["orchestrator", "agent", "physics_server"]),
+                there("usr/bin", ["orchestrator", "agent", "physics_server", "vehicle"]),
                 there("usr/share/mascot/configs", [*tree("configs", "*.toml"), *tree("configs", "*.onnx"), *tree("configs", "*.m")]),
                 there("usr/share/mascot/page", tree("orchestrator/live/page", "*.*")),
                 there("usr/share/mascot/idl", ["mascot.idl", "fastdds.xml", "qos.xml"]),

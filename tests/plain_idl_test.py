@@ -87,7 +87,7 @@ class Profiles(unittest.TestCase):
         latest = {name for name, row in topics().items() if profile_of(row) == "latest"}
         for file in ("fastdds.xml", "qos.xml"):
             words = " ".join((PROFILES / file).read_text().split())
-            named = re.search(r'latest" for (\S+) and (\S+), whose', words).groups()
+            named = re.search(r'latest" for (\S+), (\S+) and (\S+), whose', words).groups()
             self.assertEqual({name.rpartition("/")[2] for name in named}, latest)
 
     def test_a_reader_that_is_killed_leaves_no_shared_memory(self):

@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   mascot::ForgetForeignSettings();
   mascot::StopSignal stop;  // before anything that starts threads: they must inherit the mask
   CLI::App app("MASCOT agent: hears its neighbours, runs its law and its low-level stack, commands its actuators.");
-  mascot::ProcessArgs args(/*agent_process=*/true);
+  mascot::ProcessArgs args(mascot::ProcessArgs::Kind::kAgents);
   return mascot::ProcessMain(app, static_cast<int>(words.size()), arguments.data(), args, stop,
                              [&args](auto& domain, auto& lifecycle, const auto& message) {
                                return std::make_unique<AgentRole>(domain, lifecycle, message, args.agents,

@@ -19,7 +19,8 @@ constexpr Asked kAsked[] = {
     {"pause", Request::Kind::kPause, nullptr}, {"resume", Request::Kind::kResume, nullptr},
     {"stop", Request::Kind::kStop, nullptr},   {"step", Request::Kind::kStep, "count"},
     {"pace", Request::Kind::kPace, "value"},   {"seek", Request::Kind::kSeek, "t_s"},
-    {"event", Request::Kind::kEvent, "toml"},
+    {"event", Request::Kind::kEvent, "toml"},  {"start", Request::Kind::kStart, nullptr},
+    {"land", Request::Kind::kLand, "agent"},   {"kill", Request::Kind::kKill, "agent"},
 };
 
 }  // namespace

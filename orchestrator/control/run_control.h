@@ -6,10 +6,10 @@ namespace mascot {
 
 /// A request to a run while it goes on, or to the playback of a recording.
 struct Request {
-  enum class Kind { kPause, kResume, kStep, kPace, kStop, kEvent, kSeek };
+  enum class Kind { kPause, kResume, kStep, kPace, kStop, kEvent, kSeek, kStart, kLand, kKill };
   Kind kind = Kind::kPause;
-  /// kStep: ticks; kPace: simulated seconds a second, 0: as fast as it goes; kSeek: time (s); kEvent, once it is
-  /// checked: it must take effect before this tick.
+  /// kLand, kKill: the agent whose vehicle is meant, 0: all; kStep: ticks; kPace: simulated seconds a second, 0: as
+  /// fast as it goes; kSeek: time (s); kEvent, once it is checked: it must take effect before this tick.
   double number = 0;
   std::string toml = {};  ///< kEvent: the keys of one [[events]] table, without at_s
 };

@@ -1,6 +1,7 @@
 #include "orchestrator/control/run_requests.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -91,12 +92,31 @@ RunRequests::Order RunRequests::Checked(const Request& request, std::int64_t fro
       if (realtime) throw std::invalid_argument("pace: expected a run in lockstep, got one in real time (run.speed)");
       CheckPace(request.number);
       break;
+    case Request::Kind::kStart:
+    case Request::Kind::kLand:
+    case Request::Kind::kKill:
+      CheckVehicle(request);
+      break;
     case Request::Kind::kSeek:
       throw std::invalid_argument("seek: expected a recording, got a run: nobody can go back in it, or ahead");
     case Request::Kind::kEvent:
       return CheckedEvent(request.toml, from);
   }
   return {.kind = request.kind, .number = request.number};
+}
+
+void RunRequests::CheckVehicle(const Request& request) const {
+  const std::vector<int> vehicles = AgentsWithVehicles(experiment_);
+  const bool means_all =
+      request.kind == Request::Kind::kStart || (request.kind == Request::Kind::kLand && request.number == 0);
+  const bool fits = means_all ? !vehicles.empty() : std::ranges::find(vehicles, request.number) != vehicles.end();
+  if (fits) return;
+  const std::string what = request.kind == Request::Kind::kStart  ? "start"
+                           : request.kind == Request::Kind::kLand ? "land"
+                                                                  : "kill";
+  throw std::invalid_argument(vehicles.empty() ? what + ": expected a run with vehicles ([[vehicles]]), got one without"
+                                               : fmt::format("{}: expected an agent with a vehicle ({}), got {}", what,
+                                                             fmt::join(vehicles, ", "), ShortestFloat(request.number)));
 }
 
 RunRequests::Order RunRequests::CheckedEvent(const std::string& toml, std::int64_t from) {
@@ -226,14 +246,23 @@ void RunRequests::CheckAgain() {
   changed_.notify_all();
 }
 
-void RunRequests::Refuse(std::string words) {
+void RunRequests::Refuse(std::string words) { AnswerWith({false, std::move(words)}); }
+
+void RunRequests::Tell(std::string words) { AnswerWith({true, std::move(words)}); }
+
+void RunRequests::AnswerWith(Answer answer) {
   const std::lock_guard lock(mutex_);
   if (!order_ || answer_) return;
-  answer_ = Answer{false, std::move(words)};
+  answer_ = std::move(answer);
   changed_.notify_all();
 }
 
 void RunRequests::Refuse(const ConfigError& error) { Refuse(Refusal(error)); }
+
+void RunRequests::SetVehicles(std::string words) {
+  const std::lock_guard lock(mutex_);
+  status_.vehicles = std::move(words);
+}
 
 void RunRequests::CallWhenChanged(std::function<void(const RunStatus&)> tell) {
   const std::lock_guard lock(mutex_);

@@ -20,9 +20,10 @@ namespace mascot {
 /// What a run is doing.
 struct RunStatus {
   bool paused = false;
-  double pace = 0;         ///< simulated seconds a second that are asked for; 0: as fast as it goes
-  std::int64_t tick = -1;  ///< newest one recorded; -1: none
-  int domain = -1;         ///< DDS domain; -1: none
+  double pace = 0;            ///< simulated seconds a second that are asked for; 0: as fast as it goes
+  std::int64_t tick = -1;     ///< newest one recorded; -1: none
+  int domain = -1;            ///< DDS domain; -1: none
+  std::string vehicles = {};  ///< where they are in their flights: "1 flying, 3 landing"; empty: there are none
 };
 
 /// Takes requests to a run from any thread and checks them. One after the other, they then wait until the run's own
@@ -66,12 +67,19 @@ class RunRequests final : public RunControl, public RowSink {
   /// The order of Next(), an event, cannot take effect before the tick Order::number: its request is checked again, for
   /// later ticks.
   void CheckAgain();
+  /// The order of Next(), to vehicles, is passed on, as these words say.
+  void Tell(std::string words);
   /// The order of Next() cannot be carried out, for these reasons.
   void Refuse(std::string words);
   void Refuse(const ConfigError& error);
+  /// Vehicles take off as soon as all are there: nobody needs to ask for it.
+  void LetVehiclesGo() { vehicles_go_ = true; }
+  bool vehicles_go() const { return vehicles_go_; }
   /// How the ticks go on now.
   void SetStatus(bool paused, double pace);
   void SetDomain(int domain);
+  /// RunStatus::vehicles.
+  void SetVehicles(std::string words);
   /// The run is over: every Ask() that waits returns and says so, and no more requests are taken.
   void Close();
   /// Waits for a request, at most until `time`.
@@ -86,12 +94,16 @@ class RunRequests final : public RunControl, public RowSink {
   /// What the request asks for. An event takes effect at tick `from` or later. Throws ConfigError or
   /// std::invalid_argument if it is not legal.
   Order Checked(const Request& request, std::int64_t from);
+  /// Throws std::invalid_argument if a request to vehicles means none that there is.
+  void CheckVehicle(const Request& request) const;
   /// Throws ConfigError if the event is not legal, or an event of the file after it. That holds for ticks before the
   /// file's next event: behind it there may be another law.
   Order CheckedEvent(const std::string& toml, std::int64_t from);
+  void AnswerWith(Answer answer);
   Answer AnswerTo(const Order& order, std::optional<std::int64_t> tick) const;
 
   const Experiment& experiment_;
+  bool vehicles_go_ = false;
   std::mutex asking_;  // held by Ask(): one request at a time; guards ahead_
 
   /// The run as it will be when all events that are granted have taken effect.

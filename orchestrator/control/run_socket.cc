@@ -110,7 +110,8 @@ std::string RunSocket::WhoWeAre() const {
                       {"t_s", experiment_.time_s(std::max<std::int64_t>(status.tick, 0))},
                       {"duration_s", experiment_.run.duration_s},
                       {"paused", status.paused},
-                      {"pace", status.pace}});
+                      {"pace", status.pace},
+                      {"vehicles", status.vehicles}});
 }
 
 }  // namespace mascot

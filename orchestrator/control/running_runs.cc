@@ -151,6 +151,7 @@ bool Take(const RunsAnswer& answer, RunningRun& run) {
   run.duration_s = fields.Number("duration_s", 0, kLongest_s);
   run.paused = fields.Boolean("paused");
   run.pace = fields.Number("pace", 0, kFastest);
+  run.vehicles = PlainLine(fields.Text("vehicles", kLongestWords));
   return fields.are_good();
 }
 
@@ -190,7 +191,8 @@ std::string RunsJson(const std::vector<RunningRun>& runs) {
                    {"t_s", run.t_s},
                    {"duration_s", run.duration_s},
                    {"paused", run.paused},
-                   {"pace", run.pace}});
+                   {"pace", run.pace},
+                   {"vehicles", run.vehicles.empty() ? RunsAnswer() : RunsAnswer(run.vehicles)}});
     list.push_back(std::move(json));
   }
   return list.dump(2, ' ', false, RunsAnswer::error_handler_t::replace);

@@ -29,7 +29,8 @@ struct RunningRun {
   std::int64_t tick = -1;  ///< newest one recorded; -1: none
   double t_s = 0, duration_s = 0;
   bool paused = false;
-  double pace = 0;  ///< simulated seconds a second; 0: as fast as it goes
+  double pace = 0;       ///< simulated seconds a second; 0: as fast as it goes
+  std::string vehicles;  ///< where they are in their flights: "1 flying, 3 landing"; empty: there are none
 
   bool is_ours() const { return voice != Voice::kOfOthers; }
 };

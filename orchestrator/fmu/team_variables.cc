@@ -195,7 +195,7 @@ FmuTeam FmuTeamOf(TeamService& service, std::vector<int> ports) {
            .role = Role::kTime});
   all.AddParameter("address", Role::kAddress, std::string(),
                    "ADDRESS:PORT of an `orchestrator serve` that flies the team; empty: the FMU starts one (on Linux)");
-  all.AddParameter("orchestrator", Role::kOrchestrator, std::string("orchestrator"),
+  all.AddParameter("orchestrator", Role::kProgram, std::string("orchestrator"),
                    "the program that the FMU starts; a name without / is looked for in PATH");
   all.AddParameter("engine", Role::kEngine, std::string("inprocess"),
                    "how the program that the FMU starts flies the team: inprocess or dds");

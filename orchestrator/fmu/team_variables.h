@@ -24,7 +24,7 @@ struct FmuVariable {
   enum class Role {
     kTime,
     kAddress,
-    kOrchestrator,
+    kProgram,
     kEngine,
     kTimeout,
     kSeed,

@@ -74,6 +74,11 @@ void IncidentMeter::Add(const FlownRow& row, const LinkMeter& links) {
   NoteLosses(tick_, links);
 }
 
+void IncidentMeter::OnVehicle(const VehicleNews& news) {
+  const std::int64_t tick = std::max<std::int64_t>(tick_, 0);
+  Close({.kind = Kind::kVehicle, .from = tick, .to = tick, .agent = news.agent, .words = news.words});
+}
+
 void IncidentMeter::NoteEvent(const DecodedRow::RowEvent& event) {
   const auto& [number, what] = event;
   if (what.fault && what.fault->IsLoss()) is_lost_[static_cast<std::size_t>(what.fault->agent - 1)] = true;

@@ -27,7 +27,8 @@ struct Incident {
     kSpeedLimit,
     kTiltLimit,
     kRotorLimit,
-    kEvent,  ///< an event of the file or by hand, or a phase of [[law.schedule]]
+    kEvent,    ///< an event of the file or by hand, or a phase of [[law.schedule]]
+    kVehicle,  ///< something has happened to an agent's vehicle, as `words` say
   };
   Kind kind = Kind::kEvent;
   std::int64_t from = 0, to = 0;  ///< the first and the last tick
@@ -37,6 +38,7 @@ struct Incident {
   int other = 0;             ///< of kEvent: its number
   double speed_m_per_s = 0;  ///< of kContact: Contact::speed_m_per_s
   std::string toml = {};     ///< of kEvent: Event::Toml()
+  std::string words = {};    ///< of kVehicle
   bool by_hand = false;      ///< for kEvent: the event was given by hand, and is not of the file
 };
 
@@ -58,6 +60,7 @@ class IncidentMeter {
   explicit IncidentMeter(const Experiment& experiment);
   /// Adds the next tick. `links` must have the same row already.
   void Add(const FlownRow& row, const LinkMeter& links);
+  void OnVehicle(const VehicleNews& news);
   /// All incidents up to the newest tick, with the contacts and the late commands of the run, which the physics server
   /// counts.
   Incidents Result(const Contacts& contacts, const std::vector<LateCommands>& late) const;

@@ -102,6 +102,12 @@ void Metrics::MeasureFidelity(const DecodedRow& row) {
     const double deviation2 = (row.motions[i].p_WB - ideal_->p_W(static_cast<int>(i) + 1)).squaredNorm();
     squared_deviation_ += deviation2;
     max_deviation2_ = std::max(max_deviation2_, deviation2);
+    if (const auto phase = phases_.find(static_cast<int>(i) + 1); phase != phases_.end()) {
+      GapSums& gap = gaps_[*phase];
+      ++gap.rows;
+      gap.squared += deviation2;
+      gap.max2 = std::max(gap.max2, deviation2);
+    }
   }
 }
 
@@ -130,6 +136,12 @@ Measured Metrics::Result() const {
     result.infeasible_ticks = infeasible_ticks_;
   }
   if (ideal_) result.fidelity = {.rms_m = std::sqrt(squared_deviation_ / samples), .max_m = std::sqrt(max_deviation2_)};
+  for (const auto& [which, gap] : gaps_)
+    result.gaps.push_back({which.first,
+                           which.second,
+                           gap.rows,
+                           {std::sqrt(gap.squared / static_cast<double>(gap.rows)), std::sqrt(gap.max2)}});
+  if (!ideal_) result.gaps.clear();
   result.fidelity_failure = ideal_failure_;
   result.fidelity_fault = fault_;
   result.travelled_m = path_m_ / agents;

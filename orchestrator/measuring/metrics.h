@@ -2,12 +2,15 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/flight_phase.h"
 #include "experiment/experiment.h"
 #include "orchestrator/measuring/separation.h"
 #include "orchestrator/team/ideal_team.h"
@@ -32,14 +35,22 @@ struct Measured {
   /// Ticks at which some agent had no safe command; absent: no agent has law.safety.
   std::optional<std::int64_t> infeasible_ticks;
   double travelled_m = 0;  ///< mean path length of the agents
-  /// Distance of the agents from ideal bodies under the same laws, over all agents and rows.
+  /// Distance from ideal bodies under the same laws, over some agents and rows.
   struct Fidelity {
     double rms_m = 0;
     double max_m = 0;
   };
-  std::optional<Fidelity> fidelity;  ///< absent: output.fidelity is off, or what follows
+  std::optional<Fidelity> fidelity;  ///< of all agents and rows; absent: output.fidelity is off, or what follows
   std::string fidelity_failure;      ///< error of a law on ideal bodies, which ended the comparison
   std::string fidelity_fault;        ///< fault of a body, for which there is no ideal one, which ended it
+  /// The distance of an agent with a vehicle from the ideal body, in one phase of its flight.
+  struct Gap {
+    int agent = 0;
+    FlightPhase phase = FlightPhase::kFlying;
+    std::int64_t rows = 0;
+    Fidelity from_ideal = {};
+  };
+  std::vector<Gap> gaps;  ///< by agent, then by phase; empty where fidelity is absent
 };
 
 /// Measures a run row by row. Memory does not grow with the number of rows.
@@ -51,6 +62,7 @@ class Metrics {
   void Adopt(std::shared_ptr<const Experiment> now);
   /// Adds the next tick.
   void Add(const DecodedRow& row);
+  void OnVehicle(const VehicleNews& news) { phases_[news.agent] = news.phase; }
   Measured Result() const;
 
  private:
@@ -73,6 +85,12 @@ class Metrics {
   Separation separation_;
   double squared_deviation_ = 0;
   double max_deviation2_ = 0;
+  std::map<int, FlightPhase> phases_;  // of vehicles, by id: now
+  struct GapSums {
+    std::int64_t rows = 0;
+    double squared = 0, max2 = 0;
+  };
+  std::map<std::pair<int, FlightPhase>, GapSums> gaps_;
   double path_m_ = 0;
   std::vector<Eigen::Vector3d> last_p_W_;
   std::vector<Axes> axes_;     // of the agents' laws, by id - 1

@@ -42,6 +42,11 @@ void RunMeter::Add(const FlownRow& row) {
   laws_.Add(row.tick(), decoded);
 }
 
+void RunMeter::OnVehicle(const VehicleNews& news) {
+  metrics_.OnVehicle(news);
+  incidents_.OnVehicle(news);
+}
+
 std::vector<LawMeasured> RunMeter::LawsOf(std::size_t phase) const {
   return phase + 1 == phases_.size() ? laws_.Result() : phases_[phase].laws();
 }

@@ -26,6 +26,7 @@ class RunMeter final : public RowSink {
 
   void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   void Add(const FlownRow& row) override;
+  void OnVehicle(const VehicleNews& news) override;
   Measured Result() const { return metrics_.Result(); }
   /// The phases so far, in order; at least the first.
   const std::deque<PhaseMeter>& phases() const { return phases_; }

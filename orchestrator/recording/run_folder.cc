@@ -70,8 +70,9 @@ bool IsOfARun(const fs::path& folder) {
 
 bool IsLogName(const fs::path& name) {
   const std::string process = name.stem().string();
-  return name.extension() == ".log" && (process == "orchestrator" || process == "physics_server" ||
-                                        process == "viewers" || AgentsOf(process).has_value());
+  return name.extension() == ".log" &&
+         (process == "orchestrator" || process == "physics_server" || process == "viewers" ||
+          AgentsOf(process).has_value() || VehicleOf(process).has_value());
 }
 
 /// What there is in the folder by a name that a run gives, relative to it.

@@ -33,6 +33,7 @@ constexpr std::array kKindsInWords = {
     KindInWords{Kind::kTiltLimit, "tilt_limit", "agent {0} at its tilt limit, at {2} tick{4}"},
     KindInWords{Kind::kRotorLimit, "rotor_limit", "agent {0} at the limit of a rotor, at {2} tick{4}"},
     KindInWords{Kind::kEvent, "event", ""},
+    KindInWords{Kind::kVehicle, "vehicle", ""},  // the terminal has told it
 };
 static_assert(std::ranges::is_sorted(kKindsInWords, {}, &KindInWords::kind));
 
@@ -55,6 +56,7 @@ std::string WithWhat(const Incident& incident) {
 
 std::string DetailOf(const Incident& incident) {
   if (incident.kind == Kind::kContact) return fmt::format("{} m/s", incident.speed_m_per_s);
+  if (incident.kind == Kind::kVehicle) return incident.words;
   return std::string(EventInTable(incident.toml));
 }
 

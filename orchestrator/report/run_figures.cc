@@ -157,6 +157,22 @@ void AddFidelity(const Measured& measured, Figures& figures) {
   figures.AddWords("fidelity.fault", measured.fidelity_fault);
 }
 
+/// What is known of agents with vehicles beside the others.
+Json VehiclesJson(const Experiment& experiment, const std::vector<Measured::Gap>& gaps) {
+  Json list = Json::array();
+  for (const int agent : AgentsWithVehicles(experiment)) {
+    Json phases = Json::object();
+    for (const Measured::Gap& gap : gaps)
+      if (gap.agent == agent)
+        phases[kFlightPhases.Name(gap.phase)] = {
+            {"rms_m", gap.from_ideal.rms_m}, {"max_m", gap.from_ideal.max_m}, {"s", experiment.time_s(gap.rows)}};
+    list.push_back({{"agent", agent},
+                    {"kind", kVehicleKinds.Name(experiment.agent(agent).vehicle->kind)},
+                    {"gap", std::move(phases)}});
+  }
+  return list;
+}
+
 void AddRealtime(const std::optional<Pacing>& pacing, Figures& figures) {
   if (!pacing) return figures.Add("realtime", FigureValue());
   figures.Add("realtime.misses", Whole(pacing->misses));
@@ -209,6 +225,9 @@ RunFigures::RunFigures(const FlownRun& run) : run_(run) {
   AddSafety(run_, measured, all_);
   AddLinks(run_.meter, all_);
   AddFidelity(measured, all_);
+  if (!AgentsWithVehicles(run.experiment).empty())
+    all_.Add("vehicles",
+             [&experiment = run_.experiment, gaps = measured.gaps] { return VehiclesJson(experiment, gaps); });
   if (run.experiment.run.mode == Mode::kRealtime) AddRealtime(run.engine.pacing, all_);
   all_.Add("startup_s", run.engine.startup_s);
   all_.Add("total_s", FigureValue());

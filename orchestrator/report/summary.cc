@@ -104,6 +104,19 @@ std::string FidelityText(const Experiment& experiment, const Figures& figures) {
   return text;
 }
 
+/// Text on how far vehicles were from ideal bodies, by phase of their flights.
+std::string GapsText(const Measured& measured) {
+  std::string text;
+  int agent = 0;
+  for (const Measured::Gap& gap : measured.gaps) {
+    const std::string begin = gap.agent == agent ? "; " : fmt::format("\n{:<15}", fmt::format("vehicle {}", gap.agent));
+    text += fmt::format("{}{}: {:.3f} m rms from its ideal body, {:.3f} m at most", begin,
+                        kFlightPhases.Name(gap.phase), gap.from_ideal.rms_m, gap.from_ideal.max_m);
+    agent = gap.agent;
+  }
+  return text.empty() ? "" : text.substr(1) + "\n";
+}
+
 /// The first keys of a summary.
 Json WhoseSummary(const Experiment& experiment, const std::string& engine) {
   return {{"format", kFormat}, {"experiment", experiment.run.name},        {"seed", experiment.run.seed},
@@ -146,6 +159,7 @@ std::string SummaryText(const RunFigures& run, const Incidents& incidents) {
   text += IncidentsText(experiment, incidents);
   text += LinksText(figures);
   text += FidelityText(experiment, figures);
+  text += GapsText(run.run().meter.Result());
   return text;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/flight_phase.h"
 #include "experiment/live_experiment.h"
 #include "orchestrator/team/row.h"
 
@@ -29,6 +30,8 @@ class RowSink {
   virtual void Adopt(const LiveExperiment& /*live*/, std::span<const Event> /*events*/) {}
   /// Takes the next row, which is valid during the call. If this throws, the run fails.
   virtual void Add(const FlownRow& row) = 0;
+  /// Something has happened to a vehicle since the newest row; before the first row, too.
+  virtual void OnVehicle(const VehicleNews& /*news*/) {}
 };
 
 }  // namespace mascot

@@ -26,6 +26,7 @@
 #include "orchestrator/theory/loss_tolerance.h"
 #include "orchestrator/theory/survival.h"
 #include "orchestrator/theory/theory.h"
+#include "orchestrator/verbs/check_vehicles.h"
 #include "orchestrator/verbs/config_args.h"
 #include "orchestrator/verbs/law_trial.h"
 #include "orchestrator/verbs/size_text.h"
@@ -307,8 +308,11 @@ std::function<int()> SetUpCheck(CLI::App& command) {
   const auto args = std::make_shared<ConfigArgs>();
   const auto json = std::make_shared<bool>(false);
   args->AddTo(command);
+  const auto vehicles = std::make_shared<bool>(false);
   command.add_flag("--json", *json, "print JSON and nothing else");
-  return [args, json] { return Check(*args, *json); };
+  command.add_flag("--vehicles", *vehicles,
+                   "listen to the vehicles, command nothing, and say who is there and what would be refused");
+  return [args, json, vehicles] { return *vehicles ? CheckVehicles(args->Load(), *json) : Check(*args, *json); };
 }
 
 }  // namespace mascot

@@ -32,7 +32,8 @@ std::string LineOf(const RunningRun& run) {
   return fmt::format("{:<8} {:<20} {:>6} {:>6} {:>18}  {:<12} {}{}", run.process, run.name,
                      run.domain < 0 ? "-" : std::to_string(run.domain), run.agents,
                      fmt::format("{:.2f} of {} s", run.t_s, ShortestFloat(run.duration_s)), StateOf(run), run.folder,
-                     run.page.empty() ? "" : "  " + run.page);
+                     run.page.empty() ? "" : "  " + run.page) +
+         (run.vehicles.empty() ? "" : "\n         vehicles: " + run.vehicles);
 }
 
 int Ps(bool json) {

@@ -121,6 +121,16 @@ constexpr Sentence kSentences[] = {
        return Request{.kind = Request::Kind::kPace,
                       .number = NumberOf(words[0], "simulated seconds a second, or 0: as fast as it goes")};
      }},
+    {"start", "", 0, 0, [](const auto&, const auto&) { return Request{.kind = Request::Kind::kStart}; }},
+    {"land", "[AGENT]", 0, 1,
+     [](const auto&, const auto& words) {
+       return Request{.kind = Request::Kind::kLand,
+                      .number = words.empty() ? 0 : NumberOf(words[0], "an agent's number")};
+     }},
+    {"kill", "AGENT", 1, 1,
+     [](const auto&, const auto& words) {
+       return Request{.kind = Request::Kind::kKill, .number = NumberOf(words[0], "an agent's number")};
+     }},
     {"stop", "", 0, 0, [](const auto&, const auto&) { return Request{.kind = Request::Kind::kStop}; }},
     {"goto", "AGENT X Y Z", 4, 4, GoToRequest},
     {"set", "KEY=VALUE...", 1, kAny, SetRequest},
@@ -187,8 +197,21 @@ RunningRun RunOf(const SendArgs& args) {
   throw ConfigError({"send: several runs are alive; --run DIR or --domain D says which:" + ListOf(meant)});
 }
 
+/// Asks on a terminal whether motors shall stop. Without one, whoever has written the command has decided.
+bool IsMeant(const Request& request) {
+  if (request.kind != Request::Kind::kKill || !IsInputATerminal()) return true;
+  std::cerr << fmt::format("Stop the motors of vehicle {}? In the air it falls. Type yes: ", request.number);
+  std::string answer;
+  std::getline(std::cin, answer);
+  return answer == "yes";
+}
+
 int Send(const SendArgs& args) {
   const Request request = RequestOf(args);
+  if (!IsMeant(request)) {
+    std::cerr << "nothing was sent\n";
+    return kExitFailed;
+  }
   const Answer answer = AskRun(RunOf(args).process, request);
   if (answer.granted) {
     std::cout << answer.words << "\n";

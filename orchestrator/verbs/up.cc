@@ -55,6 +55,7 @@ struct UpArgs {
   std::vector<std::string> claims;  // --assert
   bool force = false, json = false, quiet = false;
   bool slurm = false;
+  bool go = false;
 };
 
 /// How many threads the recording keeps busy: what encodes and writes rows, and what compresses them.
@@ -168,6 +169,7 @@ int Up(UpArgs& args) {
   RunMeter meter(experiment, crew);
   const std::vector<Assertion> claims = ReadClaims(args.claims, experiment, prediction, meter);
   RunRequests requests(experiment, experiment.run.pace.value_or(args.viewers.at ? 1 : 0));
+  if (args.go) requests.LetVehiclesGo();
   Viewers viewers(args.viewers, args.engine.name, experiment, prediction, meter, requests, console);
 
   const RunFolder folder(args.out, experiment, args.force);
@@ -266,6 +268,8 @@ std::function<int()> SetUpUp(CLI::App& command) {
   AddAllowOrigin(command, args->viewers.allowed_origins);
   AddWatchOnly(command, args->viewers.watch_only);
   AddMetric(command, args->viewers.metric_file);
+  command.add_flag("--go", args->go,
+                   "let vehicles take off as soon as all are there; without it they wait for: orchestrator send start");
   command.add_flag("--stay", args->viewers.stay,
                    "with --view: show the recording at the same address when the run has ended, until Ctrl-C; on a "
                    "terminal it is shown anyway if somebody watches");

@@ -11,8 +11,8 @@ namespace {
 constexpr auto kAskEvery = std::chrono::milliseconds(100);
 }  // namespace
 
-JoinList::JoinList(int agents, double start_timeout_s)
-    : start_timeout_s_(start_timeout_s), ready_(static_cast<std::size_t>(agents), false) {}
+JoinList::JoinList(int agents, double start_timeout_s, bool has_vehicles)
+    : start_timeout_s_(start_timeout_s), has_vehicles_(has_vehicles), ready_(static_cast<std::size_t>(agents), false) {}
 
 void JoinList::OnAgents(AgentRange agents, bool ready) {
   const int last = std::min(agents.last, static_cast<int>(ready_.size()));
@@ -25,7 +25,9 @@ void JoinList::Begin(Time now) { begun_ = ask_again_ = now; }
 
 JoinList::Next JoinList::Look(Time now, bool matched) {
   if (matched && IsComplete()) return Next::kStart;
-  if (now - begun_ >= std::chrono::duration<double>(start_timeout_s_)) return Next::kFail;
+  const bool are_agents_ready = matched && std::ranges::count(ready_, false) == 0;
+  const bool waits_for_people = has_vehicles_ && are_agents_ready;
+  if (!waits_for_people && now - begun_ >= std::chrono::duration<double>(start_timeout_s_)) return Next::kFail;
   if (now < ask_again_) return Next::kWait;
   ask_again_ = now + kAskEvery;
   return Next::kAsk;

@@ -20,8 +20,9 @@ class JoinList {
     kFail,   ///< the time is up; Failure() says why
   };
 
-  /// `start_timeout_s`: how long the processes may take to be ready.
-  JoinList(int agents, double start_timeout_s);
+  /// `start_timeout_s`: how long the processes may take to be ready. `has_vehicles`: the recorder is ready when people
+  /// have let vehicles take off, which takes as long as it takes.
+  JoinList(int agents, double start_timeout_s, bool has_vehicles = false);
   /// Notes that the process of these agents is ready, or not; the last call counts. Ids that do not exist are ignored.
   void OnAgents(AgentRange agents, bool ready);
   /// Notes that the recorder is ready, or not; the last call counts.
@@ -39,6 +40,7 @@ class JoinList {
   bool IsComplete() const;
 
   const double start_timeout_s_;
+  const bool has_vehicles_;
   std::vector<bool> ready_;  // by id - 1
   bool recorder_ready_ = false;
   Time begun_;

@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   mascot::ForgetForeignSettings();
   mascot::StopSignal stop;  // before anything that starts threads: they must inherit the mask
   CLI::App app("MASCOT physics server: publishes every agent's state, gathers every command, steps the world.");
-  mascot::ProcessArgs args(/*agent_process=*/false);
+  mascot::ProcessArgs args(mascot::ProcessArgs::Kind::kServer);
   return mascot::ProcessMain(app, argc, argv, args, stop, [](auto& domain, auto& lifecycle, const auto& message) {
     return std::make_unique<ServerRole>(domain, lifecycle, message);
   });

@@ -34,7 +34,7 @@ TickProtocol::Rules RulesOf(const Experiment& experiment) {
 Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experiment)
     : lifecycle_(lifecycle),
       experiment_(experiment),
-      join_list_(experiment.size(), experiment.run.start_timeout_s),
+      join_list_(experiment.size(), experiment.run.start_timeout_s, !AgentsWithVehicles(experiment).empty()),
       ticks_(RulesOf(experiment)),
       world_(experiment),
       live_(experiment, nullptr, /*checked=*/true),
@@ -50,7 +50,13 @@ Server::Server(Domain& domain, Lifecycle& lifecycle, const Experiment& experimen
           [this](const mascot_msgs::msg::Status& status, const Sender& sender) { OnStatus(status, sender.process); }),
       request_reader_(domain, Topic::Request(), [this](const mascot_msgs::msg::Request& request, const Sender& sender) {
         if (sender.process == kOrchestrator) OnRequest(request);
-      }) {}
+      }) {
+  for (const AgentConfig& agent : experiment.agents)
+    if (agent.vehicle)
+      measured_readers_.push_back(std::make_unique<Reader<StateType>>(
+          domain, Topic::Measured(agent.id),
+          [this, id = agent.id](const mascot_msgs::msg::AgentState& state) { OnMeasured(id, state); }));
+}
 
 void Server::Run() {
   AwaitEveryone();
@@ -107,7 +113,8 @@ void Server::AskForReports() {
 }
 
 bool Server::Matched() const {
-  return request_reader_.matched() >= 1 && events_.matched() >= event_readers_ && delivery_->Matched();
+  return request_reader_.matched() >= 1 && events_.matched() >= event_readers_ && delivery_->Matched() &&
+         std::ranges::all_of(measured_readers_, [](const auto& reader) { return reader->matched() >= 1; });
 }
 
 void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string& from) {
@@ -134,7 +141,7 @@ void Server::OnStatus(const mascot_msgs::msg::Status& status, const std::string&
 // --- ticks ----------------------------------------------------------------------------------------------
 
 void Server::Do(const TickProtocol::Actions& actions) {
-  if (actions.step) world_.Step(commands_);
+  if (actions.step) Step();
   if (actions.step && restart_) {  // now it can be said whom it awaits
     progress_is_new_ = true;
     lifecycle_.Wake();
@@ -143,6 +150,16 @@ void Server::Do(const TickProtocol::Actions& actions) {
   if (actions.ask) delivery_->AskAgain();
   if (ticks_.finished()) delivery_->Finish();
   if (actions.wake) lifecycle_.Wake();
+}
+
+void Server::Step() {
+  for (const auto& [id, motion] : measured_) world_.Move(id, motion);
+  world_.Step(commands_);
+}
+
+void Server::OnMeasured(int id, const mascot_msgs::msg::AgentState& state) {
+  const std::lock_guard lock(mutex_);
+  measured_.insert_or_assign(id, FromWire(state));
 }
 
 void Server::Publish() {
@@ -375,6 +392,7 @@ void Server::RunTicks() {
 void Server::Start() {
   const std::lock_guard lock(mutex_);
   lifecycle_.Set(Life::kRunning);
+  for (const auto& [id, motion] : measured_) world_.Place(id, motion);
   Do(ticks_.Start());
 }
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -48,11 +49,14 @@ class Server {
   void ReportProgress();
 
   void OnAnswers(std::span<const Delivery::Answer> answers);
+  void OnMeasured(int id, const mascot_msgs::msg::AgentState& state);
   void OnStatus(const mascot_msgs::msg::Status& status, const std::string& from);
   /// Carries out what people ask of the ticks. The orchestrator repeats a request until it is answered.
   void OnRequest(const mascot_msgs::msg::Request& request);
   // The functions below are called with mutex_ held.
   void Do(const TickProtocol::Actions& actions);
+  /// Steps the world; vehicles are where they have been measured.
+  void Step();
   void Publish();
   /// Agents that do not answer the world's tick, as the file's events of the next one say, are not waited for.
   void LoseUnanswered();
@@ -94,6 +98,7 @@ class Server {
   RunProgress progress_;
   std::atomic<bool> progress_is_new_ = true;  // others have not been told
   std::vector<Actuation> commands_;           // by id - 1: the commands with which the world is stepped
+  std::map<int, Motion> measured_;            // of vehicles, by id: the newest
   PaceMeter pace_;
 
   Writer<EventType> events_;
@@ -102,6 +107,7 @@ class Server {
   std::unique_ptr<Delivery> delivery_;
   Reader<StatusType> status_reader_;
   Reader<RequestType> request_reader_;
+  std::vector<std::unique_ptr<Reader<StateType>>> measured_readers_;  // of vehicles
 };
 
 }  // namespace mascot

@@ -616,6 +616,15 @@ TEST(DomainLock, GivesEachRunADomainOfItsOwn) {
                                                 std::to_string(getpid()) + " of user " + UserName()));
 }
 
+TEST(DomainLock, OfAnyDomainIsNoneOfOthers) {
+  int domain = 0;
+  {
+    const DomainLock lock(-1);
+    domain = lock.domain();
+  }
+  EXPECT_NE(DomainLock(-1, {domain}).domain(), domain);
+}
+
 TEST(DomainLock, IsFreeAgainWhenItsRunIsOver) {
   int domain = 0;
   {

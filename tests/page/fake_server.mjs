@@ -16,7 +16,7 @@ const TYPES = {
   ".css": "text/css; charset=utf-8",
   ".svg": "image/svg+xml"
 };
-const CHANNELS = ["/ui/experiment", "/ui/frame", "/ui/events", "/ui/curves"];
+const CHANNELS = ["/ui/experiment", "/ui/frame", "/ui/events", "/ui/curves", "/ui/vehicles"];
 const SERVICE = 7;
 
 async function serve({url}, response) {
@@ -94,6 +94,7 @@ export async function startFake({port = 0, session = "1", frame_ms = 100, steer 
     send(client, "/ui/experiment", run.experiment());
     send(client, "/ui/events", run.events);
     send(client, "/ui/curves", {rows: run.curves});
+    send(client, "/ui/vehicles", run.vehicles);
     send(client, "/ui/frame", run.frame());
   }
 
@@ -123,6 +124,10 @@ export async function startFake({port = 0, session = "1", frame_ms = 100, steer 
     run,
     asked,
     drop,
+    tellVehicles(vehicles) {
+      run.vehicles = vehicles;
+      sendAll("/ui/vehicles", vehicles);
+    },
     tellEvents: () => sendAll("/ui/events", run.events),
     port: server.address().port,
     url: `http://127.0.0.1:${server.address().port}/`,

@@ -23,6 +23,7 @@ export class MadeUpRun {
   state = "running";
   pace = 1;
   events = [];
+  vehicles = [];
   waiting = [];
   past = [];  // rows of the curves of a run
   gains = {p_gain: 0.35, beta: 1.1};
@@ -375,6 +376,8 @@ export class MadeUpRun {
       this.#goTo(Math.round(t_s * RATE_HZ));
     else if (ask === "event")
       return this.#event(toml, at);
+    else if (ask === "start" || ask === "land")
+      return {granted: true, words: `asked to ${ask}`};
     else
       return {granted: false, words: `${ask}: expected pause, resume, step, pace, event or stop`};
     return {granted: true, words: at};

@@ -844,6 +844,44 @@ test("three speeds of many agents are named by their colours", async () => {
     });
 });
 
+test("vehicles are shown with what happens to them, and are asked to take off and to land", async () => {
+  const fake = await startFake();
+  const rows = (page) =>
+      page.locator("#vehicles li")
+          .evaluateAll(
+              (items) =>
+                  items.map(({children}) => [...children].map((child) => child.hidden ? "" : child.textContent)));
+  for (const size of [WIDE, PHONE]) {
+    fake.asked.length = 0;
+    fake.tellVehicles([]);
+    const {page, troubles} = await open(browser, fake.url, {size});
+    await until(page, () => mascot.tick > 0);
+    assert.ok(!await page.isVisible("#vehicles"), "no agent has one");
+    fake.tellVehicles([
+      {agent: 1, phase: "found", words: "found: PX4 1.18, at [0.00, 0.00, 0.00]"},
+      {agent: 2, phase: "absent", words: "absent: its heading is unknown"}
+    ]);
+    await until(page, () => mascot.vehicles.length === 2);
+    assert.deepEqual(
+        await rows(page),
+        [["1", "found", "PX4 1.18, at [0.00, 0.00, 0.00]", ""], ["2", "absent", "its heading is unknown", ""]]);
+    assert.ok(!await page.isVisible('#vehicles button:text-is("Land all")'), "none flies");
+    await page.click('#vehicles button:text-is("Take off")');
+    fake.tellVehicles(
+        [{agent: 1, phase: "flying", words: "flying"}, {agent: 2, phase: "lost", words: "lost: it has tumbled"}]);
+    await until(page, () => mascot.vehicles[0].phase === "flying");
+    assert.deepEqual(await rows(page), [["1", "flying", "", "Land"], ["2", "lost", "it has tumbled", ""]]);
+    assert.ok(!await page.isVisible('#vehicles button:text-is("Take off")'), "none stands on the ground");
+    await page.click("#vehicles li button:visible");
+    await page.click('#vehicles button:text-is("Land all")');
+    await until(page, () => mascot.lastAnswer?.request.agent === 0);
+    assert.deepEqual(fake.asked, [{ask: "start"}, {ask: "land", agent: 1}, {ask: "land", agent: 0}]);
+    assert.deepEqual(troubles, []);
+    await page.context().close();
+  }
+  await fake.stop();
+});
+
 test("who only watches sees everything, is told so, and can change nothing", async () => {
   const fake = await startFake({steer: "t0k"});
   const {page} = await open(browser, fake.url);

@@ -28,6 +28,7 @@
 #include "orchestrator/engines/dds/bounded_call.h"
 #include "orchestrator/engines/dds/credentials.h"
 #include "orchestrator/engines/dds/delivery.h"
+#include "orchestrator/engines/dds/fleet_links.h"
 #include "orchestrator/engines/dds/hosts/launcher.h"
 #include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "orchestrator/engines/dds/machine/janitor.h"
@@ -89,6 +90,7 @@ class DdsRun {
   DomainOptions OwnOptions() const;
   std::vector<std::string> CredentialsFor(const std::string& process);
   ProcessKey KeyOf(const std::string& process, pid_t pid) const;
+  std::vector<std::string> ArgumentsOfVehicle(int vehicle) const;
   HostJob JobOf(const HostConfig& host, const std::string& our_address);
   RunPhases::Rules Rules();
   void Join();
@@ -103,6 +105,9 @@ class DdsRun {
   void AwaitChildren();
   void CheckWire();
   void TellLosses();
+  void LookAtFleet();
+  void SteerFleet();
+  void BringDown();
   void TellLossBy(const Event& event);
   bool HaveHeardAllFrom(AgentRange agents) const;
   void SayFarewell(const std::string& process) const;
@@ -167,6 +172,7 @@ class DdsRun {
   std::pair<std::string, std::string> last_words_;      // a file, and what it gets if we are killed
   bool joins_ = false;                                  // this process has begun to join the domain
   bool library_hangs_ = false;
+  bool is_killed_ = false;  // its processes
   ChildLogs logs_;
   Children children_;
   Peers peers_;
@@ -175,6 +181,10 @@ class DdsRun {
   std::optional<Domain> discovery_server_;
   std::optional<Domain> domain_;
   std::optional<RunLinks> links_;
+  Fleet fleet_;
+  std::optional<FleetLinks> fleet_links_;
+  bool vehicles_are_there_ = false;  // all of them, once
+  const std::vector<RowSink*> sinks_;
   RowFeed feed_;
   std::optional<Recorder> recorder_;
   std::optional<ActionSender> actions_;  // if agents take some, or somebody steps the run
@@ -199,6 +209,8 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
             [this](const std::string& words) { console_.Warning(words); }),
       children_(logs_),
       audit_(experiment, peers_),
+      fleet_(experiment),
+      sinks_(sinks),
       feed_(experiment, sinks),
       phases_(Rules(), launched_) {}
 
@@ -210,7 +222,11 @@ RunPhases::Rules DdsRun::Rules() {
           .violation = [this] { return audit_.Violation(); },
           .missing = [this] { return links_->Missing(); },
           .lacking = [this] { return recorder_->Lacking(); },
-          .is_loss = [this](const std::string& process) { return GoesOnWithoutAgents() && AgentsOf(process); },
+          .waits_for_people = [this] { return !fleet_.empty() && phases_.phase() == RunPhases::Phase::kStarting; },
+          .is_loss =
+              [this](const std::string& process) {
+                return VehicleOf(process) || (GoesOnWithoutAgents() && AgentsOf(process));
+              },
           .last_lines = [this](const std::string& process) { return logs_.LastLines(process); }};
 }
 
@@ -227,7 +243,9 @@ void DdsRun::Join() {
     throw std::runtime_error(
         "network.delivery: expected \"bundled\" or \"auto\" with security = \"graph\", where agents that send messages "
         "are on other hosts or started by hand, got \"topics\"");
-  lock_.emplace(experiment_.network.domain);
+  std::set<int> of_vehicles;
+  for (const int id : AgentsWithVehicles(experiment_)) of_vehicles.insert(experiment_.agent(id).vehicle->domain);
+  lock_.emplace(experiment_.network.domain, of_vehicles);
   if (run_requests_ != nullptr) run_requests_->SetDomain(lock_->domain());
   layout_.SetDomain(lock_->domain(), lock_->discovery_port());
   SweepSharedMemory(lock_->domain());  // left by runs of which also the janitor was killed
@@ -256,6 +274,7 @@ void DdsRun::Join() {
   links_.emplace(*domain_, peers_, experiment_,
                  LogFile(folder_.Log("orchestrator"), [this](const std::string& words) { console_.Warning(words); }),
                  wake);
+  fleet_links_.emplace(*domain_, experiment_, fleet_, wake);
   recorder_.emplace(*domain_, experiment_, feed_, /*stepped=*/stepper_ != nullptr);
   if (TakesActions(experiment_) || stepper_ != nullptr)
     actions_.emplace(*domain_, experiment_, *recorder_, action_source_, stepper_);
@@ -306,25 +325,33 @@ ProcessKey DdsRun::KeyOf(const std::string& process, pid_t pid) const {
   return credentials_ ? credentials_->KeyOf(process) : ProcessKey::WithPid(pid);
 }
 
+std::vector<std::string> DdsRun::ArgumentsOfVehicle(int vehicle) const {
+  std::vector<std::string> arguments = ArgumentsOf(experiment_, lock_->domain(), kPeersOfVehicle);
+  arguments.insert(arguments.end(), {"--id", std::to_string(vehicle)});
+  return arguments;
+}
+
 HostJob DdsRun::JobOf(const HostConfig& host, const std::string& our_address) {
   HostJob job;
   job.domain = lock_->domain();
   job.shared_memory = layout_.SharedMemoryOn(host.name);
   job.silence_s = std::max(kHostPatience_s, 2 * experiment_.run.agent_timeout_s);
-  for (const AgentRange& agents : layout_.processes()) {
-    if (experiment_.agent(agents.first).host != host.name) continue;
-    std::vector<std::string> arguments = ArgumentsOf(experiment_, lock_->domain(), agents);
+  const auto add = [&](const std::string& process, std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--orchestrator", std::to_string(getpid())});
     if (layout_.with_server())
       arguments.insert(arguments.end(), {"--discovery", layout_.ServerAt(our_address)});
     else
       arguments.insert(arguments.end(), {"--peers-at", our_address});
     if (!host.address.empty()) arguments.insert(arguments.end(), {"--address", host.address});
-    const std::string process = ProcessName(agents);
     job.processes.push_back(
         {process, arguments, credentials_ ? ToText(credentials_->Issue(process, layout_.RankOf(process))) : ""});
     if (credentials_) peers_.Know(process, credentials_->KeyOf(process));
-  }
+  };
+  for (const AgentRange& agents : layout_.processes())
+    if (experiment_.agent(agents.first).host == host.name)
+      add(ProcessName(agents), ArgumentsOf(experiment_, lock_->domain(), agents));
+  for (const int vehicle : layout_.vehicles())
+    if (experiment_.agent(vehicle).host == host.name) add(VehicleName(vehicle), ArgumentsOfVehicle(vehicle));
   return job;
 }
 
@@ -346,6 +373,20 @@ void DdsRun::Spawn() {
     arguments.insert(arguments.end(), {"--peers", fmt::format("{}", fmt::join(layout_.PeersOf(process), ",")),
                                        "--awaits", std::to_string(awaits)});
     return arguments;
+  };
+  const auto spawn_vehicles = [&] {
+    for (const int vehicle : layout_.vehicles()) {
+      const std::string process = VehicleName(vehicle);
+      if (!layout_.HostOf(process).empty()) {
+        peers_.Await(process, ProcessKey());  // its host starts it
+        continue;
+      }
+      const pid_t pid =
+          children_.Spawn(process, ProgramFolder() / "vehicle",
+                          complete(process, ArgumentsOfVehicle(vehicle), layout_.NumberOf(process), kPeersOfVehicle),
+                          folder_.Log(process));
+      peers_.Know(process, KeyOf(process, pid));
+    }
   };
   const pid_t server =
       children_.Spawn(kPhysicsServer, ProgramFolder() / "physics_server",
@@ -378,13 +419,14 @@ void DdsRun::Spawn() {
     console_.Line("waiting for: " + by_hand_[process]);
   }
   for (const Children::CopyOf& copy : here) arguments_[copy.process] = copy.arguments;
-  next_number_ = kFirstAgents + static_cast<int>(here.size());
+  next_number_ = kFirstAgents + layout_.ProcessesOn("");
   const std::vector<pid_t> ids =
       children_.SpawnCopies(ProgramFolder() / "agent", here, {experiment_.run.start_timeout_s, [this] {
                                                                 OnSignal(stop_.Within(0ms));
                                                                 return phases_.in_order();
                                                               }});
   for (std::size_t k = 0; k < ids.size(); ++k) peers_.Know(here[k].process, KeyOf(here[k].process, ids[k]));
+  spawn_vehicles();
   if (experiment_.hosts.empty() || !phases_.in_order()) return;
   launcher_.emplace(
       experiment_, folder_,
@@ -409,6 +451,7 @@ EngineResult DdsRun::Fly() {
     phases_.Fail(InWords(failure));
   }
   if (run_requests_ != nullptr) run_requests_->Close();
+  BringDown();
   if (recorder_) Collect();
   result_.failure = phases_.failure();
   result_.signal = phases_.signal();
@@ -423,11 +466,13 @@ void DdsRun::Loop() {
     links_->HandOutExperiment();
     CheckWire();
     TellLosses();
+    LookAtFleet();
     StartAfresh();
     Remind();
     const RunPhases::View view = Record();
     Do(phases_.Look(view, WallClock::now()));
     if (run_requests_ != nullptr && phases_.phase() == RunPhases::Phase::kFlying) Steer();
+    if (run_requests_ != nullptr && phases_.phase() == RunPhases::Phase::kStarting && !fleet_.empty()) SteerFleet();
   }
 }
 
@@ -436,6 +481,7 @@ void DdsRun::Loop() {
 void DdsRun::Remind() {
   if (phases_.phase() != RunPhases::Phase::kStarting || WallClock::now() < next_reminder_) return;
   next_reminder_ = WallClock::now() + BetweenReminders();
+  if (phases_.found_everybody()) return console_.Line("still waiting: " + fleet_.Awaited());
   console_.Line("still waiting: " + links_->Missing());
   for (const auto& [process, command] : by_hand_)
     if (!links_->StatusOf(process)) console_.Line("waiting for: " + command);
@@ -452,6 +498,7 @@ void DdsRun::Steer() {
   const auto server = links_->StatusOf(kPhysicsServer);
   if (server && static_cast<Life>(server->state()) == Life::kRunning)
     run_requests_->SetStatus(server->paused(), server->pace());
+  SteerFleet();
   const auto order = run_requests_->Next();
   if (!order) return;
   if (order->kind == Request::Kind::kStop) {
@@ -464,6 +511,87 @@ void DdsRun::Steer() {
   is_asked_ = false;
   if (tick == kTooLate) return run_requests_->CheckAgain();
   run_requests_->Done(tick == kOver ? std::nullopt : std::optional(tick));
+}
+
+/// Tells people what has happened to vehicles, and asks of these what follows.
+void DdsRun::LookAtFleet() {
+  if (fleet_.empty()) return;
+  fleet_links_->Pass();
+  if (run_requests_ != nullptr) run_requests_->SetVehicles(fleet_.Phases());
+  for (const VehicleNews& news : fleet_.TakeNews()) {
+    console_.Line(fmt::format("vehicle {}: {}", news.agent, news.words));
+    for (RowSink* const sink : sinks_) sink->OnVehicle(news);
+  }
+  if (phases_.phase() == RunPhases::Phase::kStarting && phases_.found_everybody() && fleet_.AreFound() &&
+      !std::exchange(vehicles_are_there_, true)) {
+    if (run_requests_ != nullptr && run_requests_->vehicles_go())
+      console_.Line(fleet_.Start());
+    else
+      console_.Line("all vehicles are there; they take off when somebody says: orchestrator send start");
+  }
+  for (const Fleet::Order& order : fleet_.Orders(WallClock::now())) links_->Ask(order);
+}
+
+/// Carries out what people ask of vehicles.
+void DdsRun::SteerFleet() {
+  run_requests_->Open();
+  const auto order = run_requests_->Next();
+  if (!order) return;
+  const int agent = static_cast<int>(order->number);
+  try {
+    switch (order->kind) {
+      case Request::Kind::kStart:
+        return run_requests_->Tell(fleet_.Start());
+      case Request::Kind::kLand:
+        return run_requests_->Tell(fleet_.Land(agent, "asked to land"));
+      case Request::Kind::kKill:
+        return run_requests_->Tell(fleet_.StopMotors(agent, "asked to"));
+      case Request::Kind::kStop:
+        if (phases_.phase() != RunPhases::Phase::kStarting) return;  // Steer() does it
+        Do(phases_.OnRequestToStop(WallClock::now()));
+        return run_requests_->Tell("the run ends before it has begun");
+      default:
+        if (phases_.phase() == RunPhases::Phase::kStarting)
+          run_requests_->Refuse("the run has not begun: " + fleet_.Awaited());
+    }
+  } catch (const std::invalid_argument& error) {
+    run_requests_->Refuse(error.what());
+  }
+}
+
+/// Before the run ends, vehicles land. A signal within kHurry after another ends that.
+void DdsRun::BringDown() {
+  constexpr auto kHurry = 3s;
+  constexpr auto kLookEvery = 50ms;
+  constexpr auto kLongest = 120s;
+  if (fleet_.empty() || !fleet_links_) return;
+  LookAtFleet();
+  if (fleet_.AreDown()) return;
+  if (is_killed_) return console_.Line("nothing is sent to vehicles any more: their autopilots decide");
+  const auto begin = WallClock::now();
+  auto asked_at = begin;
+  console_.Line(fleet_.Land(0, phases_.signal() != 0 ? strsignal(phases_.signal()) : "the run ends") +
+                " (Ctrl-C within 3 s: nothing is sent any more)");
+  while (!fleet_.AreDown() && WallClock::now() < begin + kLongest) {
+    const int signal = stop_.Within(kLookEvery);
+    const auto now = WallClock::now();
+    if (signal != 0 && now < asked_at + kHurry) {
+      console_.Line("nothing is sent to vehicles any more: their autopilots decide");
+      break;
+    }
+    if (signal != 0) {
+      asked_at = now;
+      console_.Line("still landing (Ctrl-C within 3 s: nothing is sent any more)");
+    }
+    Reap();
+    TellLosses();
+    LookAtFleet();
+  }
+  if (WallClock::now() >= begin + kLongest)
+    console_.Line(
+        fmt::format("not all vehicles have landed within {} s: {}; nothing is sent any more, and their "
+                    "autopilots decide",
+                    kLongest.count(), fleet_.Phases()));
 }
 
 void DdsRun::OnSignal(int signal) {
@@ -483,6 +611,9 @@ void DdsRun::Reap() {
     for (Launcher::Ended& ended : launcher_->TakeEnded())
       exits.push_back({std::move(ended.process), ended.code, std::move(ended.text)});
   }
+  if (phases_.phase() >= RunPhases::Phase::kCollecting)  // phases_ looks at no exit any more, and vehicles land
+    for (const RunPhases::Exit& exit : exits)
+      if (const auto vehicle = VehicleOf(exit.process)) fleet_.OnProcessEnd(*vehicle, exit.text);
   phases_.OnExits(exits, WallClock::now());
 }
 
@@ -521,6 +652,10 @@ void DdsRun::SayFarewell(const std::string& process) const {
 /// Tells the physics server which agents have been lost, until an event says so.
 void DdsRun::TellLosses() {
   for (const auto& [process, story] : phases_.TakeLosses()) {
+    if (const auto vehicle = VehicleOf(process)) {
+      fleet_.OnProcessEnd(*vehicle, story.substr(process.size() + 1));
+      continue;
+    }
     const AgentRange agents = *AgentsOf(process);
     dead_.push_back(process);
     started_[agents].runs = false;             // if it is awaited, another one has to be started
@@ -625,8 +760,8 @@ RunPhases::View DdsRun::Record() {
 
 RunPhases::View DdsRun::Look() const {
   const bool starting = phases_.phase() == RunPhases::Phase::kStarting;
-  return {.everybody_found = starting && recorder_->Matched() && (!actions_ || actions_->Matched()) &&
-                             audit_.IsComplete() && links_->HaveTheExperiment(),
+  return {.everybody_found = starting && recorder_->Matched() && fleet_links_->Matched() &&
+                             (!actions_ || actions_->Matched()) && audit_.IsComplete() && links_->HaveTheExperiment(),
           .newest_tick = recorder_->newest_tick(),
           .rows = confirmed_,
           .last_tick = {},
@@ -635,10 +770,12 @@ RunPhases::View DdsRun::Look() const {
 }
 
 void DdsRun::Do(const RunPhases::Actions& actions) {
-  if (actions.say_ready) links_->SayReady(Pace(), run_requests_ != nullptr && run_requests_->status().paused);
+  if (actions.say_ready && fleet_.AreReady())
+    links_->SayReady(Pace(), run_requests_ != nullptr && run_requests_->status().paused);
   if (actions.ask_to_stop && links_)  // else nobody can be asked yet: processes are being started
     links_->Ask(Ask::kStop, phases_.signal() != 0 ? strsignal(phases_.signal()) : "asked to stop");
   if (actions.ask_to_end) AskToEnd();
+  is_killed_ = is_killed_ || actions.kill;
   if (actions.kill && launcher_) launcher_->Kill();
   if (actions.kill) children_.Kill();
 }
@@ -771,6 +908,7 @@ void DdsRun::LeaveDomain() {
   ros_publisher_.reset();
   actions_.reset();
   recorder_.reset();
+  fleet_links_.reset();
   links_.reset();
   domain_.reset();
   discovery_server_.reset();

@@ -26,6 +26,7 @@ bool ServerReads(TopicKind kind) {
     case TopicKind::kAnswers:
     case TopicKind::kCommand:
     case TopicKind::kExperiment:
+    case TopicKind::kMeasured:
     case TopicKind::kRequest:
     case TopicKind::kStatus:
       return true;
@@ -34,9 +35,28 @@ bool ServerReads(TopicKind kind) {
   }
 }
 
+}  // namespace
+
+bool VehicleReads(const Experiment& experiment, int agent, const Topic& topic) {
+  switch (topic.kind) {
+    case TopicKind::kAnswers:
+      return experiment.network.is_bundled() && topic.agents().Holds(agent);
+    case TopicKind::kCommand:
+      return !experiment.network.is_bundled() && topic.agent == agent;
+    case TopicKind::kExperiment:
+    case TopicKind::kRequest:
+      return true;
+    default:
+      return false;
+  }
+}
+
+namespace {
+
 bool MayRead(const Experiment& experiment, std::string_view process, const Topic& topic) {
   if (process == kOrchestrator) return true;  // it records
   if (process == kPhysicsServer) return ServerReads(topic.kind);
+  if (const auto vehicle = VehicleOf(process)) return VehicleReads(experiment, *vehicle, topic);
   const auto agents = AgentsOf(process);
   return agents && MayHave(experiment, *agents, topic, /*reads=*/true);
 }
@@ -90,10 +110,12 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
       return true;
     case TopicKind::kStatus:
       return !reads;
+    case TopicKind::kMeasured:
     case TopicKind::kRow:
     case TopicKind::kOdom:
     case TopicKind::kScene:
     case TopicKind::kTf:  // all agents are on them
+    case TopicKind::kVehicle:
       return false;
   }
   return false;
@@ -101,12 +123,15 @@ bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic
 
 bool IsOfTheRun(const Experiment& experiment, const Topic& topic) {
   const TopicTraits& traits = topic.traits();
+  if (traits.writer == TopicWriter::kVehicle &&
+      !(topic.agent <= experiment.size() && experiment.agent(topic.agent).vehicle))
+    return false;
   return traits.is_on_wire && (experiment.network.ros_view || !traits.is_for_ros);
 }
 
 Rights RightsOf(const Experiment& experiment, std::string_view process) {
   Rights rights;
-  for (int kind = 0; kind <= static_cast<int>(TopicKind::kTf); ++kind)
+  for (int kind = 0; kind <= static_cast<int>(TopicKind::kVehicle); ++kind)
     for (const Topic& topic : TopicsOf(experiment, static_cast<TopicKind>(kind))) {
       if (!IsOfTheRun(experiment, topic)) continue;
       if (MayRead(experiment, process, topic)) rights.reads.push_back(topic);

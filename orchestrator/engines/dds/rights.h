@@ -15,6 +15,8 @@ namespace mascot {
 
 /// Whether the process of `agents` may have a reader (`reads`) or a writer on `topic`.
 bool MayHave(const Experiment& experiment, AgentRange agents, const Topic& topic, bool reads);
+/// Whether the process of an agent's vehicle may read `topic`: what the agent commands, and what is for all.
+bool VehicleReads(const Experiment& experiment, int agent, const Topic& topic);
 /// Whether a run of this experiment has such a topic.
 bool IsOfTheRun(const Experiment& experiment, const Topic& topic);
 
@@ -22,7 +24,8 @@ bool IsOfTheRun(const Experiment& experiment, const Topic& topic);
 struct Rights {
   std::vector<Topic> reads, writes;
 };
-/// The rights of a process of the run. `process`: kPhysicsServer, kOrchestrator, or the name of a process of agents.
+/// The rights of a process of the run. `process`: kPhysicsServer, kOrchestrator, or the name of a process of agents
+/// or of a vehicle.
 Rights RightsOf(const Experiment& experiment, std::string_view process);
 
 }  // namespace mascot

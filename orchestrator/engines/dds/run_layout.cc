@@ -26,6 +26,7 @@ constexpr int kDiscoveryNumber = 2, kOwnNumber = kNumberOfOrchestrator, kServers
 RunLayout::RunLayout(const Experiment& experiment)
     : experiment_(experiment),
       processes_(AgentProcesses(experiment)),
+      vehicles_(AgentsWithVehicles(experiment)),
       external_(std::ranges::any_of(experiment.agents, &AgentConfig::external)),
       reaches_others_(external_ || !std::ranges::all_of(experiment.hosts, &HostConfig::is_here)),
       is_star_(MayBeStar()),
@@ -81,6 +82,7 @@ std::string RunLayout::ServerAt(const std::string& address) const {
 
 int RunLayout::RankOf(const std::string& process) const {
   if (process == kPhysicsServer) return kMaxRank;
+  if (const auto vehicle = VehicleOf(process)) return std::max(1, RankOf(ProcessName(ProcessWith(*vehicle))) - 1);
   const auto agents = std::ranges::find(processes_, AgentsOf(process).value_or(AgentRange{}));
   if (experiment_.agent(agents->first).external) return 0;  // it announces itself to all
   return std::max(1, kMaxRank - 2 - static_cast<int>(agents - processes_.begin()));
@@ -100,28 +102,51 @@ bool RunLayout::HaveWords(AgentRange one, AgentRange other) const {
 
 std::ptrdiff_t RunLayout::MatesOf(AgentRange agents) const {
   return std::ranges::count_if(processes_, [&](const AgentRange& other) {
-    const AgentConfig& agent = experiment_.agent(other.first);
-    return other != agents && !agent.external && agent.host.empty() && HaveWords(agents, other);
+    return other != agents && IsStartedOn("", other) && HaveWords(agents, other);
   });
 }
 
-std::vector<int> RunLayout::PeersOf(const std::string& process) const {
-  if (!experiment_.network.is_secure()) return {kOwnNumber, kServersNumber};
-  if (process == kPhysicsServer || process == kOrchestrator) return {kServersNumber};
-  std::vector<int> peers{kOwnNumber, kServersNumber};
+bool RunLayout::IsStartedOn(const std::string& host, AgentRange agents) const {
+  const AgentConfig& agent = experiment_.agent(agents.first);
+  return !agent.external && agent.host == host;
+}
+
+AgentRange RunLayout::ProcessWith(int agent) const {
+  return *std::ranges::find_if(processes_, [agent](AgentRange process) { return process.Holds(agent); });
+}
+
+int RunLayout::NumberOf(const std::string& process) const {
   int number = kFirstAgents;
-  for (const AgentRange& other : processes_) {
-    if (ProcessName(other) == process) break;
-    const AgentConfig& agent = experiment_.agent(other.first);
-    if (agent.external || !agent.host.empty()) continue;
-    if (HaveWords(*AgentsOf(process), other)) peers.push_back(number);
-    ++number;
+  for (const AgentRange& agents : processes_) {
+    if (ProcessName(agents) == process) return number;
+    if (IsStartedOn("", agents)) ++number;
+  }
+  for (const int vehicle : vehicles_) {
+    if (VehicleName(vehicle) == process) return number;
+    if (experiment_.agent(vehicle).host.empty()) ++number;
+  }
+  throw std::logic_error(process + " has no number");
+}
+
+std::vector<int> RunLayout::PeersOf(const std::string& process) const {
+  if (process == kPhysicsServer || process == kOrchestrator)
+    return experiment_.network.is_secure() ? std::vector{kServersNumber} : std::vector{kOwnNumber, kServersNumber};
+  std::vector<int> peers{kOwnNumber, kServersNumber};
+  if (const auto vehicle = VehicleOf(process)) {
+    if (const AgentRange agents = ProcessWith(*vehicle); IsStartedOn("", agents))
+      peers.push_back(NumberOf(ProcessName(agents)));
+  } else if (experiment_.network.is_secure()) {
+    for (const AgentRange& other : processes_) {
+      if (ProcessName(other) == process) break;
+      if (IsStartedOn("", other) && HaveWords(*AgentsOf(process), other)) peers.push_back(NumberOf(ProcessName(other)));
+    }
   }
   return peers;
 }
 
 std::string RunLayout::HostOf(const std::string& process) const {
-  const auto agents = AgentsOf(process);
+  const auto vehicle = VehicleOf(process);
+  const auto agents = vehicle ? AgentRange{*vehicle, *vehicle} : AgentsOf(process);
   return agents ? experiment_.agent(agents->first).host : "";
 }
 
@@ -134,19 +159,23 @@ std::uint64_t RunLayout::SharedMemoryOn(const std::string& host) const {
   DomainOptions options = Options("", DiscoveryRole::kPeer);
   std::uint64_t need = host.empty() ? 2 * SharedMemoryNeeded(options) : 0;  // this process and the physics server
   for (const AgentRange& agents : processes_) {
-    const AgentConfig& agent = experiment_.agent(agents.first);
-    if (agent.external || agent.host != host) continue;
+    if (!IsStartedOn(host, agents)) continue;
     options.participants = ParticipantsOfAgents(experiment_, agents);
     need += SharedMemoryNeeded(options);
   }
-  return need;
+  options.participants = kPeersOfVehicle;
+  return need + static_cast<std::uint64_t>(VehiclesOn(host)) * SharedMemoryNeeded(options);
 }
 
 int RunLayout::ProcessesOn(const std::string& host) const {
-  return static_cast<int>(std::ranges::count_if(processes_, [&](const AgentRange& agents) {
-    const AgentConfig& agent = experiment_.agent(agents.first);
-    return !agent.external && agent.host == host;
-  }));
+  return static_cast<int>(
+             std::ranges::count_if(processes_, [&](AgentRange agents) { return IsStartedOn(host, agents); })) +
+         VehiclesOn(host);
+}
+
+int RunLayout::VehiclesOn(const std::string& host) const {
+  return static_cast<int>(
+      std::ranges::count_if(vehicles_, [&](int agent) { return experiment_.agent(agent).host == host; }));
 }
 
 }  // namespace mascot

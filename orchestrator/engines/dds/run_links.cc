@@ -1,6 +1,7 @@
 #include "orchestrator/engines/dds/run_links.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/sinks/base_sink.h>
 
 #include <chrono>
@@ -56,6 +57,12 @@ const char* Text(Ask ask) {
       return "event";
     case Ask::kLose:
       return "lose";
+    case Ask::kStart:
+      return "start";
+    case Ask::kLand:
+      return "land";
+    case Ask::kStopMotors:
+      return "stop motors";
   }
   return "unknown";
 }
@@ -72,6 +79,7 @@ ProcessTable::Rules ProcessTableRules(const Experiment& experiment, std::uint64_
   ProcessTable::Rules rules{
       .processes = {kPhysicsServer}, .external = {}, .experiment = digest, .last_tick = experiment.ticks()};
   for (const AgentRange& agents : AgentProcesses(experiment)) rules.processes.push_back(ProcessName(agents));
+  for (const int vehicle : AgentsWithVehicles(experiment)) rules.processes.push_back(VehicleName(vehicle));
   for (const AgentConfig& agent : experiment.agents) rules.external.push_back(agent.external);
   return rules;
 }
@@ -188,6 +196,15 @@ void RunLinks::Ask(mascot::Ask ask, const std::string& reason) {
   request.reason(reason);
   requests_.Write(request);
   Note(fmt::format("request: {} ({})", Text(ask), reason));
+}
+
+void RunLinks::Ask(const Fleet::Order& order) {
+  mascot_msgs::msg::Request request;
+  request.kind(static_cast<std::uint8_t>(order.ask));
+  request.agents(order.agents);
+  request.reason(order.reason);
+  requests_.Write(request);
+  Note(fmt::format("request of vehicles {}: {} ({})", fmt::join(order.agents, ", "), Text(order.ask), order.reason));
 }
 
 void RunLinks::Steer(const RunRequests::Order& order, std::uint32_t number) {

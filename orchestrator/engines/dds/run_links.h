@@ -13,6 +13,7 @@
 #include "bus/wire.h"
 #include "experiment/experiment.h"
 #include "orchestrator/control/run_requests.h"
+#include "orchestrator/engines/dds/fleet.h"
 #include "orchestrator/engines/dds/process_table.h"
 #include "system/log_file.h"
 
@@ -42,6 +43,8 @@ class RunLinks {
   void Confirm(std::int64_t rows);
   /// Publishes a request to all processes.
   void Ask(mascot::Ask ask, const std::string& reason);
+  /// Publishes a request to processes of vehicles.
+  void Ask(const Fleet::Order& order);
   /// Publishes a numbered request to the physics server: again at most five times a second. Cheap to call often.
   void Steer(const RunRequests::Order& order, std::uint32_t number);
   /// Tells the physics server that agents are lost: again at most five times a second. Cheap to call often.

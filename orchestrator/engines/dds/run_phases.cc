@@ -95,6 +95,7 @@ RunPhases::Actions RunPhases::OnSignal(int signal, Time now) {
 
 RunPhases::Actions RunPhases::OnRequestToStop(Time now) {
   if (IsOver() || stop_deadline_) return {};
+  if (phase_ == Phase::kStarting) Finish();  // as OnSignal does
   stop_deadline_ = now + kGrace;
   return {.ask_to_stop = true};
 }
@@ -120,7 +121,8 @@ void RunPhases::JudgeExits() {
   for (const Exit& exit : std::exchange(exits_, {})) {
     const bool by_the_signal = signal_ != 0 && exit.code == 128 + signal_;
     std::string story = by_the_signal ? "" : StoryOfEnd(exit.process, exit.text, rules_.last_lines(exit.process));
-    const bool has_begun = phase_ == Phase::kFlying || phase_ == Phase::kDraining;  // and an event may have ended it
+    // Once it has begun, an event may have ended it.
+    const bool has_begun = phase_ == Phase::kFlying || phase_ == Phase::kDraining || rules_.waits_for_people();
     if (!by_the_signal && has_begun && rules_.is_loss(exit.process)) {
       losses_.emplace_back(exit.process, std::move(story));
       continue;
@@ -165,6 +167,7 @@ void RunPhases::LookAtDeadlines(const View& view, Time now) {
   if (stop_deadline_ && now > *stop_deadline_)  // and record what has come
     return signal_ != 0 ? Finish() : Fail("asked to stop, physics_server did not within 5 s");
   if (phase_ == Phase::kStarting) {
+    if (found_everybody_ && rules_.waits_for_people()) return;
     if (now > After(launched_, Seconds(rules_.start_timeout_s) + kStartGrace))
       Fail("not started within run.start_timeout_s = " + ShortestFloat(rules_.start_timeout_s) +
            " s: " + rules_.missing());

@@ -42,7 +42,9 @@ class RunPhases {
     std::function<std::string()> violation;  ///< how the DDS endpoints differ from the graph; empty: they do not
     std::function<std::string()> missing;    ///< what the start still waits for
     std::function<std::string()> lacking;    ///< what the recording waits for; empty: for nothing but the next tick
-    /// Whether the exit of this process is the loss of its agents, with which the run goes on (run.on_agent_loss).
+    /// Whether the start waits for people, who let vehicles take off: that takes as long as it takes.
+    std::function<bool()> waits_for_people = [] { return false; };
+    /// Whether the exit of this process is the loss of its agents, or of its vehicle, with which the run goes on.
     std::function<bool(const std::string& process)> is_loss;
     /// The last lines that a child printed.
     std::function<std::vector<std::string>(const std::string& process)> last_lines;

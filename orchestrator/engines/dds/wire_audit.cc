@@ -24,6 +24,7 @@ std::string RightfulWriter(const Experiment& experiment, const Topic& topic) {
   if (topic.traits().writer == TopicWriter::kEverybody) return "processes of the run";
   for (const char* process : {kOrchestrator, kPhysicsServer})
     if (MayWrite(process, topic)) return process;
+  if (topic.traits().writer == TopicWriter::kVehicle) return VehicleName(topic.agent);
   for (const AgentRange& agents : AgentProcesses(experiment))
     if (agents.Holds(topic.agent)) return ProcessName(agents);
   return AgentName(topic.agent);
@@ -127,6 +128,8 @@ std::string WireAudit::ViolationOf(const Guid& guid, const Endpoint& endpoint) c
       return what + ", but there are only agents 1 to " + std::to_string(experiment_.size());
     if (exist && !MayHave(experiment_, *agents, topic, reads)) return what + ", which the graph does not let it";
   }
+  const auto vehicle = VehicleOf(process);
+  if (vehicle && reads && !VehicleReads(experiment_, *vehicle, topic)) return what + ", which is not of its agent";
   if (reads) return {};
   const auto may_write = [&](const std::string& one) { return MayWrite(one, endpoint.topic); };
   if (!is_ours || !(may_write(process) || std::ranges::any_of(peers_.ProcessesOf(guid.guidPrefix), may_write)))

@@ -15,6 +15,7 @@ import {Layers, Status} from "./panel/status.js";
 import {bindTabs} from "./panel/tabs.js";
 import {Transport} from "./panel/transport.js";
 import {Tune} from "./panel/tune.js";
+import {Vehicles} from "./panel/vehicles.js";
 import {Hand} from "./scene/hand.js";
 import {places} from "./scene/overlay.js";
 import {View} from "./scene/view.js";
@@ -35,6 +36,7 @@ const connection = new Connection(
       "/ui/events": (bytes) => model.setEvents(parse(bytes)),
       "/ui/curves": (bytes) => model.setCurves(parse(bytes)),
       "/ui/metrics": (bytes) => model.setMetrics(parse(bytes)),
+      "/ui/vehicles": (bytes) => model.setVehicles(parse(bytes)),
       "/ui/frame": (bytes) => {
         newestRow = bytes;
       },
@@ -61,6 +63,7 @@ const agents = new Agents(model, asking);
 const tune = new Tune(model, asking);
 const events = new Events(model, notices);
 const results = new Results(model);
+const vehicles = new Vehicles(model, asking, byId("vehicles"));
 const hand = new Hand(view, asking, byId("tip"), byId("card"));
 const layers = new Layers(view, byId("layer-list"));
 
@@ -136,6 +139,7 @@ window.mascot = {
   get positions() { return model.frame?.p ?? []; },
   get edgeStates() { return model.frame?.edge ?? []; },
   get events() { return model.events; },
+  get vehicles() { return model.vehicles; },              // {agent, phase, words}
   get leftOut() { return model.frame?.left_out ?? []; },  // by edge: bit k for axis k
   get liars() { return model.liars; },                    // numbers of agents
   get lost() { return model.lost; },

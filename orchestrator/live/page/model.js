@@ -34,6 +34,7 @@ export class Model {
   frame = null;
   curves = {rows: []};  // of a run up to when the page was opened, of a recording as far as it has been read
   metrics = {metrics: [], rows: [], error: ""};  // the user's own, each for the run up to a time
+  vehicles = [];                                 // of agents that have one: {agent, phase, words}
   events = [];
   #expected = [];     // granted here: {tick, words, toml, edge}
   selected = 0;       // number of an agent, 0: none
@@ -43,7 +44,7 @@ export class Model {
 
   /**
    * Calls `listener` after each change of a kind: "connection", "run" (another run, or other agents), "experiment" (a
-   *  value of it), "frame", "curves", "metrics", "events", "selected".
+   *  value of it), "frame", "curves", "metrics", "events", "vehicles", "selected".
    */
   on(kind, listener) { (this.#listeners[kind] ??= []).push(listener); }
 
@@ -80,6 +81,7 @@ export class Model {
     this.curves = {rows: []};
     this.metrics = {metrics: [], rows: [], error: ""};
     this.events = [];
+    this.vehicles = [];
     this.#expected = [];
   }
 
@@ -108,6 +110,11 @@ export class Model {
   setMetrics(metrics) {
     this.metrics = metrics;
     this.#tell("metrics");
+  }
+
+  setVehicles(vehicles) {
+    this.vehicles = vehicles;
+    this.#tell("vehicles");
   }
 
   setEvents(events) {

@@ -39,6 +39,9 @@ Answer Playback::Grant(const Request& request) {
       return {true, fmt::format("plays {} simulated seconds a second", speed_)};
     case Request::Kind::kStop:
     case Request::Kind::kEvent:
+    case Request::Kind::kStart:
+    case Request::Kind::kLand:
+    case Request::Kind::kKill:
       break;
   }
   return {false, "a recording cannot be changed"};

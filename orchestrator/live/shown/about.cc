@@ -10,10 +10,11 @@ namespace mascot {
 namespace {
 
 constexpr const char* kServiceName = "/mascot/ask";
-constexpr std::string_view kRequestSchema = R"({"type":"object","required":["ask"],"properties":{)"
-                                            R"("ask":{"enum":["pause","resume","stop","step","pace","event","seek"]},)"
-                                            R"("count":{"type":"integer"},"value":{"type":"number"},)"
-                                            R"("toml":{"type":"string"},"t_s":{"type":"number"}}})";
+constexpr std::string_view kRequestSchema =
+    R"({"type":"object","required":["ask"],"properties":{)"
+    R"("ask":{"enum":["pause","resume","stop","step","pace","event","seek","start","land","kill"]},)"
+    R"("count":{"type":"integer"},"value":{"type":"number"},)"
+    R"("toml":{"type":"string"},"t_s":{"type":"number"},"agent":{"type":"integer"}}})";
 constexpr std::string_view kAnswerSchema =
     R"({"type":"object","properties":{"granted":{"type":"boolean"},"words":{"type":"string"}}})";
 
@@ -62,7 +63,7 @@ Foxglove::About AboutTheRun(const Experiment& experiment, std::vector<Foxglove::
                         .end_ns = StampNs(last_tick, experiment.control.rate_hz),
                         .channels = {JsonChannel("/ui/experiment", "object"), JsonChannel("/ui/frame", "object"),
                                      JsonChannel("/ui/events", "array"), JsonChannel("/ui/curves", "object"),
-                                     JsonChannel("/ui/metrics", "object")},
+                                     JsonChannel("/ui/metrics", "object"), JsonChannel("/ui/vehicles", "array")},
                         .connections = [&experiment] { return ConnectionsOf(experiment); },
                         .service = kServiceName,
                         .request = {"mascot/Wish", "jsonschema", std::string(kRequestSchema)},

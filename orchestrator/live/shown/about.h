@@ -15,6 +15,7 @@ enum UiChannel : Foxglove::ChannelId {
   kEventsChannel,
   kCurvesChannel,
   kMetricsChannel,
+  kVehiclesChannel,
   kFirstOfRos
 };
 

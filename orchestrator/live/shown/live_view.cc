@@ -58,8 +58,12 @@ LiveView::LiveView(const Experiment& experiment, const Prediction& prediction, c
       shown_state_(state_),
       ros_(experiment),
       ros_channels_(ros_.channels().size()),
-      latched_{Shared(ExperimentJson(experiment, TheoryOf(experiment), source_, {})), nullptr,
-               Shared(EventsJson(experiment, {})), nullptr, Shared(MetricCurves::NoMetrics())},
+      latched_{Shared(ExperimentJson(experiment, TheoryOf(experiment), source_, {})),
+               nullptr,
+               Shared(EventsJson(experiment, {})),
+               nullptr,
+               Shared(MetricCurves::NoMetrics()),
+               Shared(VehiclesJson({}))},
       foxglove_(
           AboutTheRun(experiment, ros_.channels(), source_.recorded ? source_.recorded->last_tick : experiment.ticks()),
           *this),
@@ -151,6 +155,13 @@ void LiveView::SetCurves(const Curves& curves) {
 
 void LiveView::SetMetrics(std::string json) {
   server_.Post([this, json = std::move(json)]() mutable { PublishLatched(kMetricsChannel, std::move(json)); });
+}
+
+void LiveView::OnVehicle(const VehicleNews& news) {
+  server_.Post([this, news] {
+    vehicles_[news.agent] = news;
+    PublishLatched(kVehiclesChannel, VehiclesJson(vehicles_));
+  });
 }
 
 void LiveView::PublishEvents() { PublishLatched(kEventsChannel, EventsJson(experiment_, events_)); }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -69,6 +70,8 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   const Steering& steering() const { return steering_; }
   /// Takes the next row, from the run's thread.
   void Add(const FlownRow& row) override;
+  /// From the run's thread.
+  void OnVehicle(const VehicleNews& news) override;
 
   // From any thread.
   /// Ends the view, because of an error in our own code, and says so in the log.
@@ -152,6 +155,7 @@ class LiveView final : public RowSink, private SocketUser, private Foxglove::Hos
   Foxglove::Payload latched_[kFirstOfRos];  // the newest message of each UiChannel
   std::set<ClientId> missed_[kFirstOfRos];  // clients that were too slow for this message
   std::vector<ShownEvent> events_;
+  std::map<int, VehicleNews> vehicles_;  // the newest of each, by agent
   std::optional<WallClock::time_point> measured_at_;
   std::int64_t measured_tick_ = 0;
 

@@ -353,6 +353,13 @@ std::string CurvesJson(const Experiment& experiment, const Curves& curves) {
   return out += "]}";
 }
 
+std::string VehiclesJson(const std::map<int, VehicleNews>& newest) {
+  Json list = Json::array();
+  for (const auto& [agent, news] : newest)
+    list.push_back({{"agent", agent}, {"phase", kFlightPhases.Name(news.phase)}, {"words", news.words}});
+  return CompactJson(list);
+}
+
 std::string EventsJson(const Experiment& experiment, const std::vector<ShownEvent>& events) {
   Json json = Json::array();
   for (const ShownEvent& event : events)

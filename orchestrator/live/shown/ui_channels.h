@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "agent/neighbours.h"
+#include "base/flight_phase.h"
 #include "experiment/experiment.h"
 #include "experiment/toml/key.h"
 #include "orchestrator/live/shown/curves.h"
@@ -93,6 +94,8 @@ std::string ExperimentJson(const Experiment& experiment, const ShownTheory& theo
 std::string FrameJson(const Experiment& experiment, const ShownRow& row, const RunState& state);
 /// /ui/curves
 std::string CurvesJson(const Experiment& experiment, const Curves& curves);
+/// /ui/vehicles: of each vehicle, the newest that has happened to it.
+std::string VehiclesJson(const std::map<int, VehicleNews>& newest);
 /// /ui/events
 std::string EventsJson(const Experiment& experiment, const std::vector<ShownEvent>& events);
 

@@ -4,24 +4,26 @@
 
 namespace mascot {
 
-void ViewSink::Adopt(const LiveExperiment& live, std::span<const Event> events) {
+void ViewSink::Try(const std::function<void()>& call) {
   if (broken_) return;
   try {
-    inner_.Adopt(live, events);
+    call();
   } catch (...) {
     broken_ = true;
     fail_(CaughtInWords());
   }
 }
 
+void ViewSink::Adopt(const LiveExperiment& live, std::span<const Event> events) {
+  Try([&] { inner_.Adopt(live, events); });
+}
+
 void ViewSink::Add(const FlownRow& row) {
-  if (broken_) return;
-  try {
-    inner_.Add(row);
-  } catch (...) {
-    broken_ = true;
-    fail_(CaughtInWords());
-  }
+  Try([&] { inner_.Add(row); });
+}
+
+void ViewSink::OnVehicle(const VehicleNews& news) {
+  Try([&] { inner_.OnVehicle(news); });
 }
 
 }  // namespace mascot

@@ -16,8 +16,11 @@ class ViewSink final : public RowSink {
   ViewSink(RowSink& inner, std::function<void(const std::string& why)> fail) : inner_(inner), fail_(std::move(fail)) {}
   void Adopt(const LiveExperiment& live, std::span<const Event> events) override;
   void Add(const FlownRow& row) override;
+  void OnVehicle(const VehicleNews& news) override;
 
  private:
+  void Try(const std::function<void()>& call);
+
   RowSink& inner_;
   const std::function<void(const std::string&)> fail_;
   bool broken_ = false;  // it gets no more rows

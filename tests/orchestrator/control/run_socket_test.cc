@@ -278,7 +278,7 @@ while True:
 TEST(RunsAlive, DoesNotListWhoAnswersOtherThanARun) {
   const std::string good =
       R"({"name":"a","folder":"/f","engine":"dds","page":"","agents":3,"domain":4,"tick":1,"t_s":0.1,"duration_s":1,)"
-      R"("paused":false,"pace":0})";
+      R"("paused":false,"pace":0,"vehicles":""})";
   const auto listed = [](const std::string& answer) {
     const Listener listener(RunNameOf, AnswersWith(answer));
     return ListedAs(listener.pid());

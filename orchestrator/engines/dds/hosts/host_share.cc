@@ -8,6 +8,7 @@
 #include "base/utf8.h"
 #include "bus/resources.h"
 #include "bus/shared_memory.h"
+#include "idl/topics.h"
 #include "orchestrator/engines/dds/hosts/same_bits.h"
 #include "orchestrator/formats/compact_json.h"
 #include "orchestrator/formats/outside_fields.h"
@@ -164,7 +165,8 @@ void HostShare::Start(const HostJob& job) {
       credentials_->Write(file, process.credentials);
       arguments.insert(arguments.end(), {"--credentials", (credentials_->path() / file).string()});
     }
-    const pid_t pid = children_.Spawn(process.name, ProgramFolder() / "agent", arguments, "/dev/null");
+    const char* const program = VehicleOf(process.name) ? "vehicle" : "agent";
+    const pid_t pid = children_.Spawn(process.name, ProgramFolder() / program, arguments, "/dev/null");
     Tell({{"kind", "started"}, {"process", process.name}, {"pid", pid}});
   }
 }

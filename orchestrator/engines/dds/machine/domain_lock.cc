@@ -89,9 +89,9 @@ std::string Holders() {
 
 }  // namespace
 
-DomainLock::DomainLock(int wanted) : domain_(wanted) {
+DomainLock::DomainLock(int wanted, const std::set<int>& others) : domain_(wanted) {
   if (wanted < 0) {
-    TakeAny();
+    TakeAny(others);
     return;
   }
   const Taken taken = Take(wanted);
@@ -115,9 +115,11 @@ DomainLock::Taken DomainLock::Take(int domain) {
   return Taken::kNowhere;
 }
 
-void DomainLock::TakeAny() {
+void DomainLock::TakeAny(const std::set<int>& others) {
   const std::set<int> busy = UdpPortsInUse();
   for (domain_ = kFirstDomain; domain_ <= kLastDomain; domain_ += kDomainsPerRun) {
+    const auto other = others.lower_bound(domain_);
+    if (other != others.end() && *other < domain_ + kDomainsPerRun) continue;
     if (HasPortIn(busy, FirstPort(domain_), FirstPort(domain_ + kDomainsPerRun))) continue;
     if (Take(domain_) == Taken::kNowhere) return;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <set>
 
 #include "system/local_socket.h"
 
@@ -14,9 +15,9 @@ bool IsUdpPortInUse(int port);
 /// folder. It lasts as long as this object, or a process that inherited its descriptors (Janitor), and leaves nothing.
 class DomainLock {
  public:
-  /// Reserves domain `wanted`; if `wanted` < 0, any free domain. Throws std::runtime_error if it is in use or none is
-  /// free; the message names the user that has it, or them.
-  explicit DomainLock(int wanted);
+  /// Reserves domain `wanted`; if `wanted` < 0, any free domain that is none of `others`. Throws std::runtime_error if
+  /// it is in use or none is free; the message names the user that has it, or them.
+  explicit DomainLock(int wanted, const std::set<int>& others = {});
 
   int domain() const { return domain_; }
   /// The descriptor that holds the reservation.
@@ -30,7 +31,7 @@ class DomainLock {
 
   /// Reserves the domain, unless another run has it.
   Taken Take(int domain);
-  void TakeAny();
+  void TakeAny(const std::set<int>& others);
 
   int domain_ = -1;
   Descriptor name_, memory_;

@@ -214,13 +214,15 @@ TEST(Foxglove, AsksTheRunForWhatAServiceCallWants) {
   server.Reply({true, "at tick 7"});
   EXPECT_THAT(server.binaries[1], ElementsAre(Bytes('\3', 0u, 5u, 4u) + R"(json{"granted":true,"words":"at tick 7"})"));
   const std::tuple<std::string, const char*, std::uint32_t, const char*> kWrong[] = {
-      {"{}", "json", 0, "expected {\"ask\": pause | resume | stop | step | pace | seek | event}"},
-      {R"({"ask":"fly"})", "json", 0, "expected {\"ask\": pause | resume | stop | step | pace | seek | event}"},
+      {"{}", "json", 0, "expected {\"ask\": pause | resume | stop | step | pace | seek | event | start | land | kill}"},
+      {R"({"ask":"fly"})", "json", 0,
+       "expected {\"ask\": pause | resume | stop | step | pace | seek | event | start | land | kill}"},
       {R"({"ask":"pace"})", "json", 0, "pace: expected a number as \"value\""},
       {R"({"ask":"event","toml":1})", "json", 0, "event: expected a text as \"toml\""},
-      {"not json", "json", 0, "expected {\"ask\": pause | resume | stop | step | pace | seek | event}"},
+      {"not json", "json", 0,
+       "expected {\"ask\": pause | resume | stop | step | pace | seek | event | start | land | kill}"},
       {R"({"ask":"event","toml":"x","more":)" + Repeated(300'000, "[") + Repeated(300'000, "]") + "}", "json", 0,
-       "expected {\"ask\": pause | resume | stop | step | pace | seek | event}"},
+       "expected {\"ask\": pause | resume | stop | step | pace | seek | event | start | land | kill}"},
       {"{}", "cdr", 0, "expected the encoding json, got cdr"},
       {"{}", "json", 3, "there is no such service"}};
   for (const auto& [request, encoding, service, words] : kWrong) {

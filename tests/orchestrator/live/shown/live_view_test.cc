@@ -541,6 +541,18 @@ TEST(LiveView, WhoComesLateGetsTheCurvesFromTheStart) {
   EXPECT_EQ(rows[300][0], 3.0);
 }
 
+TEST(LiveView, ShowsTheNewestOfEachVehicleBeforeTheFirstRowToo) {
+  Watched run{Load(kTwoPhases)};
+  Viewer viewer(run.view.url());
+  viewer.Subscribe("/ui/vehicles");
+  EXPECT_EQ(viewer.NextJsonOf("/ui/vehicles"), Json::array());
+  run.view.OnVehicle({.agent = 2, .phase = FlightPhase::kFound, .words = "found: PX4 1.18"});
+  EXPECT_EQ(viewer.NextJsonOf("/ui/vehicles"),
+            Json::parse(R"([{"agent":2,"phase":"found","words":"found: PX4 1.18"}])"));
+  run.view.OnVehicle({.agent = 2, .phase = FlightPhase::kTakingOff, .words = "taking off"});
+  EXPECT_EQ(viewer.NextJsonOf("/ui/vehicles")[0]["phase"], "taking off");
+}
+
 TEST(LiveView, NamesTheCurveOfTheLawAndWhatTheoryPredictsOfIt) {
   Watched run{
       Load("[run]\nduration_s = 1.0\n[agents]\ncount = 2\nmodel = 'single_integrator'\n"

@@ -1,0 +1,341 @@
+// Runs in which agents have vehicles: real processes, with autopilots that are programs of ours (tests/fakes).
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/support/fakes.h"
+#include "tests/support/orchestrator.h"
+
+namespace mascot::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Vehicles : public ::testing::Test {
+ protected:
+  /// Three agents, those of `real` with vehicles. `keys`: more of [[vehicles]].
+  std::string Team(const std::string& real, const std::string& keys, double duration_s = 3,
+                   const std::string& run = "") {
+    WriteFile(folder_.File("team.toml"),
+              "[run]\nmode = 'realtime'\nagent_timeout_s = 2.0\nduration_s = " + std::to_string(duration_s) + "\n" +
+                  run +
+                  "[agents]\ncount = 3\nmodel = 'double_integrator'\n"
+                  "position_m = [[0.0, 0.0, 0.8], [4.0, 0.0, 0.8], [0.0, 4.0, 0.8]]\n[graph]\ntopology = 'complete'\n"
+                  "[law]\nname = 'consensus'\np_gain = 0.05\nv_gain = 1.0\n[control]\nmax_acceleration_m_per_s2 = "
+                  "0.5\n[output]\nsave_plot = false\n"
+                  "[[vehicles]]\nagents = " +
+                  real + "\ndomain = " + std::to_string(airfield_.domain()) +
+                  "\naddress = '127.0.0.1'\ntakeoff_m = 0.5\n" + keys);
+    return folder_.File("team.toml");
+  }
+  Up Fly(const std::string& team, const std::vector<std::string>& more = {"--go"}) {
+    return Up(folder_, "run", team, more);
+  }
+  static Ran Orchestrator(const std::string& words) { return Shell("'" MASCOT_BINARY_DIR "/orchestrator' " + words); }
+  Ran Check(const std::string& team) { return Orchestrator("check '" + team + "' --vehicles"); }
+
+  ScratchFolder folder_;
+  Airfield airfield_{folder_};
+};
+
+const std::string kPx4 = "kind = 'px4'\n";
+constexpr double kEndless = 1000;  // s
+
+TEST_F(Vehicles, TakeOffFlyAndLand) {
+  airfield_.AddPx4(1, "0,0,0");
+  airfield_.AddPx4(2, "4,0,0", {"--release", "1.18"});
+  Up up = Fly(Team("[1, 2]", kPx4));
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  for (const char* words :
+       {"vehicle 1: found: PX4 1.16 or 1.17", "vehicle 2: found: PX4 1.18", "vehicle 1: streaming", "vehicle 1: armed",
+        "vehicle 1: taking off: to its start, [0.00, 0.00, 0.80]", "vehicle 1: ready", "vehicle 1: flying",
+        "vehicle 2: landing: the run is over", "vehicle 2: landed"}) {
+    EXPECT_THAT(up.err(), HasSubstr(words));
+  }
+  EXPECT_THAT(up.File("events.csv"), AllOf(HasSubstr("vehicle"), HasSubstr("flying"), HasSubstr("landed")));
+  EXPECT_TRUE(airfield_.at(1).Said("disarmed"));
+  for (const int k : {0, 1}) {
+    const nlohmann::json vehicle = up.Summary().at("vehicles").at(static_cast<std::size_t>(k));
+    EXPECT_EQ(vehicle.at("agent"), k + 1);
+    EXPECT_EQ(vehicle.at("kind"), "px4");
+    EXPECT_GE(vehicle.at("gap").at("flying").at("s"), 2.0);
+    const Ran replayed = Orchestrator(fmt::format("replay '{}' --to {}", up.path().string(), k + 1));
+    EXPECT_EQ(replayed.exit_code, 0) << replayed.output;
+    EXPECT_THAT(replayed.output, HasSubstr("decides the same, bit for bit: 301 ticks"));
+  }
+  EXPECT_THAT(up.out(), HasSubstr("m rms from its ideal body, "));
+}
+
+TEST_F(Vehicles, OfFourReleasesMeetWhereIdealBodiesMeet) {
+  const char* releases[] = {"1.15", "1.16", "1.17", "1.18"};
+  const char* places[] = {"0,0,0", "2,0,0", "2,2,0", "0,2,0"};
+  for (int agent = 1; agent <= 4; ++agent)
+    airfield_.AddPx4(agent, places[agent - 1], {"--release", releases[agent - 1]});
+  WriteFile(
+      folder_.File("meet.toml"),
+      "[run]\nmode = 'realtime'\nagent_timeout_s = 2.0\nduration_s = 15.0\n[agents]\ncount = 4\n"
+      "model = 'double_integrator'\nposition_m = [[0.0, 0.0, 0.8], [2.0, 0.0, 0.8], [2.0, 2.0, 0.8], "
+      "[0.0, 2.0, 0.8]]\n[graph]\ntopology = 'complete'\n[law]\nname = 'consensus'\np_gain = 0.1\nv_gain = 0.5\n"
+      "[output]\nsave_plot = false\n[[vehicles]]\nagents = '1-4'\nkind = 'px4'\naddress = '127.0.0.1'\ndomain = " +
+          std::to_string(airfield_.domain()) + "\n");
+  Up up = Fly(folder_.File("meet.toml"));
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  constexpr double kGap_m = 0.15;  // fakes follow their set-points with gains of PX4's order
+  for (const nlohmann::json& vehicle : up.Summary().at("vehicles")) {
+    const nlohmann::json flying = vehicle.at("gap").at("flying");
+    EXPECT_LT(flying.at("max_m"), kGap_m) << vehicle;
+    EXPECT_LE(flying.at("rms_m"), flying.at("max_m"));
+  }
+  EXPECT_LT(up.Summary().at("consensus").at("final_disagreement_m"), 2 * kGap_m);
+}
+
+TEST_F(Vehicles, OfAFrozenAgentAreLeftToTheirAutopilot) {
+  Running& px4 = airfield_.AddPx4(1, "0,0,0");
+  airfield_.AddPx4(2, "4,0,0");
+  Up up = Fly(Team("[1, 2]", kPx4 + "on_loss = 'hold'\n", /*duration_s=*/8, "on_agent_loss = 'hold'\n"));
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: flying"); })) << up.err();
+  const pid_t agent = up.Child("agent_1");
+  SignalTo(agent, SIGSTOP);
+  EXPECT_TRUE(Until([&] { return px4.Said("no sign of life: lands"); })) << px4.err();
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_THAT(up.err(), HasSubstr("vehicle 1: its agent has not commanded for 0.5 s: nothing is sent until it does"));
+  EXPECT_THAT(up.err(), HasSubstr("vehicle 2: landing: the run is over"));
+}
+
+TEST_F(Vehicles, MotorsStopWhenSomebodyMeansIt) {
+  Running& px4 = airfield_.AddPx4(1, "0,0,0");
+  Up up = Fly(Team("[1]", kPx4, kEndless));
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: flying"); })) << up.err();
+  const std::string kill = "'" MASCOT_BINARY_DIR "/orchestrator' send --run '" + up.path().string() + "' kill 1";
+  const Ran doubtful = Shell("printf 'no\\n' | script -qec \"" + kill + "\" /dev/null");
+  EXPECT_EQ(doubtful.exit_code, 1);
+  EXPECT_THAT(doubtful.output, AllOf(HasSubstr("Stop the motors of vehicle 1? In the air it falls. Type yes: "),
+                                     HasSubstr("nothing was sent")));
+  EXPECT_FALSE(px4.Said("disarmed"));
+  const Ran meant = Shell("printf 'yes\\n' | script -qec \"" + kill + "\" /dev/null");
+  EXPECT_EQ(meant.exit_code, 0) << meant.output;
+  EXPECT_THAT(meant.output, HasSubstr("the motors of vehicle 1 stop"));
+  EXPECT_TRUE(Until([&] { return px4.Said("disarmed"); })) << px4.err();
+  EXPECT_TRUE(Until([&] { return up.Said("vehicle 1: lost: its motors are stopped"); })) << up.err();
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
+}
+
+TEST_F(Vehicles, AreNotAwaitedByARunThatIsStopped) {
+  airfield_.AddPx4(1, "0,0,0");
+  Up up = Fly(Team("[1]", kPx4, kEndless), {});
+  ASSERT_TRUE(Until([&] { return up.Said("all vehicles are there"); })) << up.err();
+  const std::string send = "send --run '" + up.path().string() + "' ";
+  const Ran paused = Orchestrator(send + "pause");
+  EXPECT_EQ(paused.exit_code, 1);
+  EXPECT_THAT(paused.output, HasSubstr("the run has not begun: vehicle 1 is found"));
+  EXPECT_THAT(Orchestrator(send + "land").output, HasSubstr("land: expected a vehicle in the air, got none"));
+  EXPECT_THAT(Orchestrator(send + "land 3").output, HasSubstr("land: expected an agent with a vehicle (1), got 3"));
+  EXPECT_THAT(Orchestrator("ps").output, HasSubstr("1 found"));
+  const Ran stopped = Orchestrator(send + "stop");
+  EXPECT_EQ(stopped.exit_code, 0) << stopped.output;
+  EXPECT_THAT(stopped.output, HasSubstr("the run ends before it has begun"));
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+}
+
+TEST_F(Vehicles, NothingArmsBeforeSomebodySaysSo) {
+  Running& px4 = airfield_.AddPx4(1, "0,0,0");
+  Up up = Fly(Team("[1]", kPx4), {});
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: found"); })) << up.err();
+  ASSERT_TRUE(Until([&] { return up.Said("still waiting: vehicle 1 is found"); })) << up.err();
+  EXPECT_FALSE(px4.Said("armed"));
+  EXPECT_EQ(Orchestrator("send --run '" + up.path().string() + "' start").exit_code, 0);
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: flying"); })) << up.err();
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+}
+
+TEST_F(Vehicles, CtrlCLandsThem) {
+  airfield_.AddPx4(1, "0,0,0");
+  Up up = Fly(Team("[1]", kPx4, kEndless));
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: flying"); })) << up.err();
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
+  EXPECT_THAT(up.err(), AllOf(HasSubstr("vehicle 1: landing"), HasSubstr("vehicle 1: landed")));
+}
+
+TEST_F(Vehicles, LoseTheirHeartbeatWithTheOrchestrator) {
+  Running& px4 = airfield_.AddPx4(1, "0,0,0");
+  Up up = Fly(Team("[1]", kPx4, kEndless));
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: flying"); })) << up.err();
+  up.Signal(SIGKILL);
+  EXPECT_EQ(up.Wait(), -SIGKILL);
+  EXPECT_TRUE(Until([&] { return px4.Said("no sign of life: lands"); })) << px4.out();
+  EXPECT_TRUE(Until([&] { return px4.Said("disarmed"); })) << px4.out();
+}
+
+TEST_F(Vehicles, LoseTheirHeartbeatWithASecondCtrlC) {
+  Running& px4 = airfield_.AddPx4(1, "0,0,0");
+  Up up = Fly(Team("[1]", kPx4, kEndless));
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: flying"); })) << up.err();
+  up.Signal(SIGINT);
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: landing"); })) << up.err();
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
+  EXPECT_THAT(up.err(), HasSubstr("nothing is sent to vehicles any more: their autopilots decide"));
+  EXPECT_FALSE(up.Said("vehicle 1: landed"));
+  EXPECT_TRUE(Until([&] { return px4.Said("disarmed"); })) << px4.err();
+}
+
+TEST_F(Vehicles, ThatLoseTheirProcessAreLeftToTheirAutopilot) {
+  Running& px4 = airfield_.AddPx4(1, "0,0,0");
+  airfield_.AddPx4(2, "4,0,0");
+  Up up = Fly(Team("[1, 2]", kPx4 + "on_loss = 'hold'\n", /*duration_s=*/6));
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: flying"); })) << up.err();
+  SignalTo(ChildOf(up.pid(), "/vehicle "), SIGKILL);
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_THAT(up.err(), HasSubstr("vehicle 1: lost: its process was killed by signal 9"));
+  EXPECT_THAT(up.err(), HasSubstr("vehicle 2: landing: the run is over"));
+  EXPECT_TRUE(Until([&] { return px4.Said("no sign of life: lands"); })) << px4.err();
+}
+
+/// What is wrong with the first of two vehicles in the air, what is said of it, and what the other one does.
+struct Trouble {
+  std::string name;
+  std::vector<std::string> fake;  ///< options of the fake
+  std::string keys;               ///< of [[vehicles]]
+  std::string words;              ///< of `up`
+  std::string other;              ///< of `up`, of the other vehicle
+};
+
+class InTheAir : public Vehicles, public ::testing::WithParamInterface<Trouble> {};
+
+TEST_P(InTheAir, TroubleIsToldAndLeavesTheOthersInOrder) {
+  const Trouble& trouble = GetParam();
+  airfield_.AddPx4(1, "0,0,0", trouble.fake);
+  airfield_.AddPx4(2, "4,0,0");
+  Up up = Fly(Team("[1, 2]", kPx4 + trouble.keys, /*duration_s=*/10));
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_THAT(up.err(), HasSubstr(trouble.words));
+  EXPECT_THAT(up.err(), HasSubstr(trouble.other));
+  EXPECT_THAT(up.err(), HasSubstr("vehicle 2: landed"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Vehicles, InTheAir,
+    ::testing::Values(
+        Trouble{"SilenceOfARadio",
+                {"--silent-from-s", "14", "--silent-to-s", "44"},
+                "on_loss = 'hold'\n",
+                "vehicle 1: lost: nothing has been heard of where it is for 1.0 s",
+                "vehicle 2: landing: the run is over"},
+        Trouble{"SilenceThatLandsTheOthers",
+                {"--silent-from-s", "14"},
+                "on_loss = 'land'\n",
+                "vehicle 1: lost: nothing has been heard of where it is for 1.0 s",
+                "vehicle 2: landing: vehicle 1 is lost"},
+        Trouble{"APilotThatTakesOver",
+                {"--pilot-at-s", "14"},
+                "on_loss = 'hold'\n",
+                "vehicle 1: lost: it follows no set-points any more: a pilot or its own failsafe has taken over",
+                "vehicle 2: landing: the run is over"},
+        Trouble{"AnEstimatorThatMovesItsOrigin",
+                {"--reset-at-s", "14"},
+                "",
+                "vehicle 1: its estimator has moved its origin by",
+                "vehicle 1: landing: the run is over"},
+        Trouble{"AFenceThatIsCrossed",
+                {},
+                "fence = [[-1.0, -1.0, -1.0], [5.0, 0.2, 2.0]]\n",
+                "vehicle 1: landing: it is beyond its fence, at ",
+                "vehicle 1: landed"}),
+    [](const auto& row) { return row.param.name; });
+
+/// What is wrong with a vehicle on the ground, and what is said of it.
+struct Refusal {
+  std::string name;
+  std::vector<std::string> fake;
+  std::string keys;
+  std::string words;
+};
+
+class OnTheGround : public Vehicles, public ::testing::WithParamInterface<Refusal> {};
+
+TEST_P(OnTheGround, WhatIsWrongIsToldAndTheVehicleStaysThere) {
+  const Refusal& refusal = GetParam();
+  Running& px4 = airfield_.AddPx4(1, "0,0,0", refusal.fake);
+  Up up = Fly(Team("[1]", kPx4 + refusal.keys, kEndless));
+  ASSERT_TRUE(Until([&] { return up.Said(refusal.words); })) << up.err();
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
+  EXPECT_FALSE(px4.Said("\narmed"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Vehicles, OnTheGround,
+    ::testing::Values(Refusal{"AWrongSystemId",
+                              {"--system-id", "9"},
+                              "",
+                              "vehicle 1: found: it does not follow set-points: it has not answered (is system_id "
+                              "right? does it hear us?)"},
+                      Refusal{"RefusedArming",
+                              {"--refuses-arming"},
+                              "",
+                              "vehicle 1: found: it does not arm: arming is rejected for now"},
+                      Refusal{"AnUnknownHeading", {"--no-heading"}, "", "its heading is unknown"},
+                      Refusal{"AnUnknownRelease",
+                              {"--release", "strange"},
+                              "",
+                              "80 bytes of vehicle_status_v4: the known lengths are 83 (1.18)"},
+                      Refusal{"AnOriginThatIsNotThatOfTheFile",
+                              {},
+                              "origin = [3.0, 0.0, 0.0]\n",
+                              "vehicle 1: it does not start: it is 3.00 m from its start, and 0.5 m are allowed"}),
+    [](const auto& row) { return row.param.name; });
+
+TEST_F(Vehicles, AreHeardBeforeAFlightByNobodyWhoCommandsThem) {
+  Running& px4 = airfield_.AddPx4(1, "0.1,0,0");
+  const std::string team = Team("[1, 2]", kPx4);
+  const Ran alone = Check(team);
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.output, HasSubstr("vehicle 1    PX4 1.16 or 1.17, "));
+  EXPECT_THAT(alone.output, HasSubstr("vehicle 2    absent\n  refused    nothing has been heard of it"));
+  airfield_.AddPx4(2, "4,0,0", {"--release", "1.15"});
+  const Ran both = Check(team);
+  EXPECT_EQ(both.exit_code, 0) << both.output;
+  EXPECT_THAT(both.output, HasSubstr("vehicle 2    PX4 1.15, "));
+  EXPECT_THAT(both.output, Not(HasSubstr("refused")));
+  EXPECT_FALSE(px4.Said("offboard"));
+}
+
+TEST_F(Vehicles, OfCrazyswarmFlyAndTumble) {
+  airfield_.AddCrazyflie(1, "0,0,0");
+  const std::string keys = "kind = 'crazyswarm'\norigin = 'shared'\n";
+  Up up = Fly(Team("[1]", keys));
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_THAT(up.err(), AllOf(HasSubstr("vehicle 1: found: Crazyswarm2"), HasSubstr("vehicle 1: landed")));
+  airfield_.AddCrazyflie(1, "0,0,0", {"--tumbles-at-s", "12"});
+  Up tumbles(folder_, "tumbles", Team("[1]", keys, /*duration_s=*/10), {"--go"});
+  EXPECT_EQ(tumbles.Wait(), 0) << tumbles.err();
+  EXPECT_THAT(tumbles.err(), HasSubstr("vehicle 1: lost: it has tumbled"));
+}
+
+TEST_F(Vehicles, OfArdupilotFlyAndLandWithALowBattery) {
+  airfield_.AddArdupilot(1, "0,0,0");
+  const std::string keys = "kind = 'ardupilot'\n";
+  Up up = Fly(Team("[1]", keys));
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_THAT(up.err(), AllOf(HasSubstr("vehicle 1: found: ArduPilot"), HasSubstr("vehicle 1: landed")));
+  airfield_.AddArdupilot(1, "0,0,0", {"--battery-low-at-s", "14"});
+  Up low(folder_, "low", Team("[1]", keys, /*duration_s=*/10), {"--go"});
+  EXPECT_EQ(low.Wait(), 0) << low.err();
+  EXPECT_THAT(
+      low.err(),  // whichever message comes first
+      AnyOf(HasSubstr("vehicle 1: lost: it follows no set-points any more: one of its failsafes is active: battery"),
+            HasSubstr("vehicle 1: landing: its battery is at 10 %")));
+}
+
+}  // namespace
+}  // namespace mascot::test
