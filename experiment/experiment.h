@@ -206,6 +206,7 @@ struct Experiment {
     int agents_per_process = 1;
     DeliveryMode delivery = DeliveryMode::kAuto;
     bool ros_view = false;
+    bool crazyswarm = false;  ///< scripts for Crazyswarm2 fly the agents whose laws take actions
     Security security = Security::kOff;
     Protection protection = Protection::kNone;
 

@@ -241,6 +241,7 @@ void ReadNetwork(Section& section, Experiment& experiment) {
   network.agents_per_process = static_cast<int>(section.Integer("agents_per_process"));
   network.delivery = kDeliveries.Value(section.OneOf("delivery"));
   network.ros_view = section.Boolean("ros_view");
+  network.crazyswarm = section.Boolean("crazyswarm");
   network.security = kSecurities.Value(section.OneOf("security"));
   network.protection = kProtections.Value(section.OneOf("protection"));
   if (!network.is_secure() && network.protection != Protection::kNone)
@@ -250,6 +251,10 @@ void ReadNetwork(Section& section, Experiment& experiment) {
     section.Fail("transport", "expected \"auto\" or \"udp\" with security = \"graph\", got 'shm'");
   if (network.is_secure() && network.ros_view)
     section.Fail("ros_view", "expected false with security = \"graph\": RViz2 has no certificate, got true");
+  if (network.is_secure() && network.crazyswarm)
+    section.Fail("crazyswarm", "expected false with security = \"graph\": scripts have no certificate, got true");
+  if (network.crazyswarm && experiment.run.mode != Mode::kRealtime)
+    section.Fail("crazyswarm", "expected run.mode = \"realtime\" with it: scripts look at the clock, got \"lockstep\"");
   section.Done();
 }
 
@@ -320,6 +325,8 @@ Experiment Read(Section document, const LawCatalog* laws, const std::string& def
       ReadLawParameters(*laws, law, overrides, experiment);
     }
     experiment.events = ReadLawSchedules(laws, law, overrides, rate_hz, ticks, experiment);
+    if (laws != nullptr && experiment.network.crazyswarm && !network.Wrong("crazyswarm") && !TakesActions(experiment))
+      network.Fail("crazyswarm", "expected agents whose law takes actions with it, got none");
     if (laws != nullptr) law.Done();
     for (AgentOverride& override : overrides)
       if (laws != nullptr && override.law) override.law->Done();
@@ -370,6 +377,7 @@ std::span<const Key> ExperimentKeys() {
           "back; topics: each state, command and message has a topic of its own, for tools that listen; auto: "
           "bundled")
           .Default("\"auto\""),
+      key::Boolean("crazyswarm", "scripts for Crazyswarm2 fly the agents whose laws take actions").Default("false"),
       key::Boolean("ros_view", "publishes `/tf` and `/scene`, for RViz2").Default("false"),
       key::OneOf(
           "security", kSecurities.names(),

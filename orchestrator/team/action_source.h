@@ -11,6 +11,9 @@ namespace mascot {
 class ActionSource {
  public:
   virtual ~ActionSource() = default;
+  /// Over DDS: the domain of the run, and the address of the interface on which its processes are; empty: all. Called
+  /// once, before the first At().
+  virtual void OnDomain(int /*domain*/, const std::string& /*address*/) {}
   /// The actions of `tick`, by id - 1; empty: the agent gets none, so that the action before holds. Asked once at each
   /// tick, in order, when the states of that tick are known and, in lockstep, the rows of all ticks before are with the
   /// sinks; in the thread that gives them these. Valid until the next call. Throws std::runtime_error, which ends the

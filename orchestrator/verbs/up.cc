@@ -17,6 +17,7 @@
 #include "base/utf8.h"
 #include "orchestrator/control/run_requests.h"
 #include "orchestrator/control/run_socket.h"
+#include "orchestrator/crazyswarm/crazyswarm_server.h"
 #include "orchestrator/engines/dds/delivery.h"
 #include "orchestrator/engines/progress.h"
 #include "orchestrator/live/server/address.h"
@@ -160,7 +161,9 @@ int Up(UpArgs& args) {
     throw ConfigError({"--metric: expected --view with it (a sweep has own metrics in its table)"});
   std::optional<EndsAtOnce> before_the_run(stop);
   const Experiment experiment = Load(args);
-  args.engine.Refuse(experiment);
+  args.engine.Refuse(experiment, /*gives_actions=*/experiment.network.crazyswarm);
+  if (experiment.network.crazyswarm && args.engine.name != kOverDds)
+    throw ConfigError({"network.crazyswarm: expected --engine dds with it"});
   Prediction prediction = Predict(experiment);
   before_the_run.reset();
 
@@ -196,10 +199,12 @@ int Up(UpArgs& args) {
     ros_view.emplace(experiment, meter);
     sinks.push_back(&ros_sink.emplace(*ros_view, [&ros_view](const std::string& why) { ros_view->Fail(why); }));
   }
+  std::optional<CrazyswarmServer> crazyswarm;
+  if (experiment.network.crazyswarm) sinks.push_back(&crazyswarm.emplace(experiment));
   const RunSocket socket(experiment, std::filesystem::absolute(folder.path()).string(), args.engine.name, viewers.url(),
                          requests);
   EngineRun flight(args.engine.name, experiment, folder, sinks, &requests, console, stop, crew,
-                   ros_view ? &*ros_view : nullptr);
+                   ros_view ? &*ros_view : nullptr, crazyswarm ? &*crazyswarm : nullptr);
   flight.LeaveIfKilled(summary_file,
                        SummaryIfKilled(experiment, args.engine.name, std::nullopt,
                                        "the orchestrator was killed (SIGKILL: by somebody, or for want of memory), or "

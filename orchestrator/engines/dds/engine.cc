@@ -278,6 +278,7 @@ void DdsRun::Join() {
   recorder_.emplace(*domain_, experiment_, feed_, /*stepped=*/stepper_ != nullptr);
   if (TakesActions(experiment_) || stepper_ != nullptr)
     actions_.emplace(*domain_, experiment_, *recorder_, action_source_, stepper_);
+  if (action_source_ != nullptr) action_source_->OnDomain(lock_->domain(), layout_.reaches_others() ? "" : "127.0.0.1");
   if (ros_ != nullptr) ShowToRos();
 }
 
