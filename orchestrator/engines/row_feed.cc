@@ -51,6 +51,10 @@ void RowFeed::Add(const Row& bytes) {
 
 void RowFeed::Add(std::int64_t tick, const DecodedRow& decoded) { HandOut(FromThisProcess(tick, decoded, encoder_)); }
 
+void RowFeed::OnVehicle(const VehicleNews& news) {
+  for (RowSink* sink : sinks_) sink->OnVehicle(news);
+}
+
 void RowFeed::HandOut(const FlownRow& row) {
   events_.clear();
   for (const DecodedRow::RowEvent& event : row.decoded().events) {

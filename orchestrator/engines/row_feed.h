@@ -22,6 +22,8 @@ class RowFeed {
   void Add(const Row& bytes);
   /// Adds the next tick of a run in one process. Throws what a sink throws.
   void Add(std::int64_t tick, const DecodedRow& decoded);
+  /// Passes on what has happened to a vehicle. Throws what a sink throws.
+  void OnVehicle(const VehicleNews& news);
 
  private:
   void HandOut(const FlownRow& row);

@@ -184,7 +184,6 @@ class DdsRun {
   Fleet fleet_;
   std::optional<FleetLinks> fleet_links_;
   bool vehicles_are_there_ = false;  // all of them, once
-  const std::vector<RowSink*> sinks_;
   RowFeed feed_;
   std::optional<Recorder> recorder_;
   std::optional<ActionSender> actions_;  // if agents take some, or somebody steps the run
@@ -210,7 +209,6 @@ DdsRun::DdsRun(const Experiment& experiment, const RunFolder& folder, const std:
       children_(logs_),
       audit_(experiment, peers_),
       fleet_(experiment),
-      sinks_(sinks),
       feed_(experiment, sinks),
       phases_(Rules(), launched_) {}
 
@@ -303,7 +301,7 @@ void DdsRun::ShowToRos() {
       layout_.with_server() ? &audit_ : nullptr);
 }
 
-/// Of a participant of this process.
+/// The options of a participant of this process.
 DomainOptions DdsRun::Options(const std::string& name, DiscoveryRole role) const {
   DomainOptions options = layout_.Options(name, role);
   options.credentials = own_credentials_;
@@ -521,7 +519,7 @@ void DdsRun::LookAtFleet() {
   if (run_requests_ != nullptr) run_requests_->SetVehicles(fleet_.Phases());
   for (const VehicleNews& news : fleet_.TakeNews()) {
     console_.Line(fmt::format("vehicle {}: {}", news.agent, news.words));
-    for (RowSink* const sink : sinks_) sink->OnVehicle(news);
+    feed_.OnVehicle(news);
   }
   if (phases_.phase() == RunPhases::Phase::kStarting && phases_.found_everybody() && fleet_.AreFound() &&
       !std::exchange(vehicles_are_there_, true)) {
