@@ -57,7 +57,7 @@ class OutsideDomain::Listener final : public dds::DataReaderListener {
   Bytes bytes_;
 };
 
-/// Of the requests of a service, and of those that read its replies.
+/// Listens to the requests of a service, and to who has found its replies.
 class OutsideDomain::Server final : public dds::DataReaderListener, public dds::DataWriterListener {
  public:
   explicit Server(std::function<Bytes(const Bytes&)> answer) : answer_(std::move(answer)) {}

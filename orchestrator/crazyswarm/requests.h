@@ -19,7 +19,7 @@ namespace mascot::crazyswarm {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Of `takeoff` and `land`.
+/// A request of the services `takeoff` and `land`.
 struct HeightRequest {
   double height_m = 0, duration_s = 0;
 };

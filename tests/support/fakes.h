@@ -37,7 +37,7 @@ class Airfield {
   Running& at(int agent) { return *vehicles_.at(agent); }
 
  private:
-  /// Of what is given twice, the last holds.
+  /// Starts a fake. An option that is given twice has its last value.
   Running& Add(int agent, const std::string& kind, std::vector<std::string> words,
                const std::vector<std::string>& more) {
     words.insert(words.end(), {"--domain", std::to_string(domain())});

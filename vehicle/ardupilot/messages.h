@@ -41,7 +41,7 @@ struct Status {
 std::optional<Pose> ReadPose(std::span<const std::uint8_t> sample);
 std::optional<Twist> ReadTwist(std::span<const std::uint8_t> sample);
 std::optional<Status> ReadStatus(std::span<const std::uint8_t> sample);
-/// Of sensor_msgs/BatteryState: the share that is left, 0 to 1; NaN: unknown.
+/// Reads sensor_msgs/BatteryState: the share of the battery that is left, 0 to 1; NaN: unknown.
 std::optional<double> ReadBattery(std::span<const std::uint8_t> sample);
 /// Of the replies of `arm_motors`, `mode_switch` and `takeoff`: whether it was done.
 std::optional<bool> ReadReply(std::span<const std::uint8_t> sample);

@@ -53,7 +53,7 @@ void Fleet::OnProcessEnd(int agent, const std::string& how) {
   if (was_up) OnLoss(agent);
 }
 
-/// Those that are to land when another one is lost do.
+/// Asks the vehicles to land whose on_loss says so, because another one is lost.
 void Fleet::OnLoss(int agent) {
   std::vector<std::uint32_t> others;
   for (const auto& [id, vehicle] : vehicles_)

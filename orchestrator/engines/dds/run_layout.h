@@ -28,7 +28,7 @@ class RunLayout {
   /// have ports in this domain that network.security relies on.
   void SetDomain(int domain, int discovery_port);
 
-  /// Of agents, in increasing id.
+  /// The agents of each process, in increasing id.
   const std::vector<AgentRange>& processes() const { return processes_; }
   /// The agents with a vehicle, in increasing id; each vehicle has a process on its agent's host.
   const std::vector<int>& vehicles() const { return vehicles_; }
@@ -37,7 +37,7 @@ class RunLayout {
   bool is_star() const { return is_star_; }
   bool with_server() const { return with_server_; }  ///< a discovery server
 
-  /// Of a participant of the orchestrator; without credentials.
+  /// The options of a participant of the orchestrator, without credentials.
   DomainOptions Options(const std::string& name, DiscoveryRole role) const;
   /// "IP-ADDRESS:PORT" of the discovery server, for processes that reach this host at `address`.
   std::string ServerAt(const std::string& address) const;
