@@ -16,10 +16,10 @@ Trajectory::Point Trajectory::At(double t_s) const {
   for (; piece + 1 != pieces_.end() && t > piece->duration_s; ++piece) t -= piece->duration_s;
   Point point{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   for (int axis = 0; axis < 3; ++axis)
-    for (std::size_t k = kCoefficients; k-- > 0;) {  // Horner's scheme, with the first two derivatives
+    for (std::size_t k = kCoefficients; k > 0; --k) {  // Horner's scheme, with the first two derivatives
       point.a[axis] = point.a[axis] * t + 2 * point.v[axis];
       point.v[axis] = point.v[axis] * t + point.p[axis];
-      point.p[axis] = point.p[axis] * t + piece->axes[static_cast<std::size_t>(axis)][k];
+      point.p[axis] = point.p[axis] * t + piece->axes[static_cast<std::size_t>(axis)][k - 1];
     }
   if (rests) point.v = point.a = Eigen::Vector3d::Zero();
   return point;
