@@ -18,6 +18,8 @@
 #include <string>
 #include <thread>
 
+#include "tests/fakes/options.h"
+
 namespace mascot::fakes {
 
 namespace dds = eprosima::fastdds::dds;
@@ -25,15 +27,15 @@ namespace dds = eprosima::fastdds::dds;
 /// The participant of a fake in the vehicles' domain, by UDP.
 class Bridge {
  public:
-  Bridge(int domain, const std::string& name, bool any_interface) {
+  Bridge(const OnDds& on_dds, const std::string& name) {
     dds::DomainParticipantQos qos = dds::PARTICIPANT_QOS_DEFAULT;
     qos.name(name);
     qos.transport().use_builtin_transports = false;
     auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-    if (!any_interface) udp->interfaceWhiteList.push_back("127.0.0.1");
+    if (!on_dds.any_interface) udp->interfaceWhiteList.push_back("127.0.0.1");
     qos.transport().user_transports.push_back(udp);
-    participant_ =
-        dds::DomainParticipantFactory::get_instance()->create_participant(static_cast<dds::DomainId_t>(domain), qos);
+    participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
+        static_cast<dds::DomainId_t>(on_dds.domain), qos);
     if (participant_ == nullptr) throw std::runtime_error("Fast DDS refused to make the participant");
     publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
     subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);

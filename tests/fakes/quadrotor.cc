@@ -48,6 +48,7 @@ void Quadrotor::Step(const std::optional<Eigen::Vector3d>& acceleration_ENU) {
   parts_->world.Step(actuators);
   const bool rests = height_m() < kNear_m && motion().v_WB.norm() < kSlow_m_per_s;
   resting_s_ = rests ? resting_s_ + kPeriod_s : 0;
+  if (flown_s_ > 0 || height_m() > kOffTheGround_m) flown_s_ += kPeriod_s;
 }
 
 }  // namespace mascot::fakes

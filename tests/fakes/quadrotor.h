@@ -13,6 +13,7 @@ namespace mascot::fakes {
 class Quadrotor {
  public:
   static constexpr double kPeriod_s = 0.01;
+  static constexpr double kOffTheGround_m = 0.06;  ///< higher than that, it has left it
 
   /// `place_ENU`: of the ground below it (m).
   explicit Quadrotor(const Eigen::Vector3d& place_ENU);
@@ -25,12 +26,14 @@ class Quadrotor {
   void Step(const std::optional<Eigen::Vector3d>& acceleration_ENU);
   /// Where it stands still on the ground, for how long (s); 0: it does not.
   double resting_s() const { return resting_s_; }
+  /// Since it first left the ground (s).
+  double flown_s() const { return flown_s_; }
   double height_m() const { return motion().p_WB.z() - boot_ENU().z(); }
 
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
-  double resting_s_ = 0;
+  double resting_s_ = 0, flown_s_ = 0;
 };
 
 }  // namespace mascot::fakes

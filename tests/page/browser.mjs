@@ -41,6 +41,6 @@ export async function open(browser, url, {size = SMALL, colorScheme = "light", .
       "response",
       (response) => response.status() >= 400 && troubles.push(`${response.status()} for ${response.url()}`));
   await page.goto(url);
-  await page.waitForFunction(() => window.mascot?.tick >= 0);
+  await page.waitForFunction(() => window.mascot?.tick >= 0, undefined, {timeout: 60_000});
   return {page, troubles, close: () => context.close()};
 }

@@ -10,7 +10,8 @@ import {fileURLToPath} from "node:url";
 import {within} from "./waits.mjs";
 
 const ROOT = fileURLToPath(new URL("../..", import.meta.url));
-const ORCHESTRATOR = join(process.env.MASCOT_BINARY_DIR ?? join(ROOT, "build/release"), "orchestrator");
+const BINARIES = process.env.MASCOT_BINARY_DIR ?? join(ROOT, "build/release");
+const ORCHESTRATOR = join(BINARIES, "orchestrator");
 
 /**
  * Starts an experiment of configs/, in lockstep and at one simulated second a second unless `options` say otherwise.
@@ -26,6 +27,12 @@ export async function startRun(config, ...options) {
 export async function startRunOf(toml, ...options) {
   const {folder, file} = await written(toml);
   return serve(folder, ["up", file, "--view", "--out", join(folder, "run"), ...options]);
+}
+
+/** Switches on a PX4 that is not there, with these options. Returns what switches it off. */
+export function switchOnPx4(...options) {
+  const vehicle = spawn(join(BINARIES, "fake_px4"), options, {stdio: "ignore"});
+  return () => vehicle.kill("SIGKILL");
 }
 
 /** Flies an experiment, given as TOML, as fast as it goes, and serves its recording with these options; likewise. */

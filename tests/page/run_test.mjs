@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 
 import {launch, open} from "./browser.mjs";
 import {clickEdge, drag, edgeInTheOpen, edgeShowsAs, pausedFromAbove, until} from "./hand.mjs";
-import {startRecording, startRun, startRunOf, textOf} from "./real_run.mjs";
+import {startRecording, startRun, startRunOf, switchOnPx4, textOf} from "./real_run.mjs";
 import {test} from "./waits.mjs";
 
 /** What follows each other on one run, which `body` functions get with its page. */
@@ -485,3 +485,48 @@ test(
         await browser.close();
       }
     });
+
+test("a leader with a real vehicle flies to where it is dragged, and lands when it is asked to", async () => {
+  // A domain that no run chooses for itself, with a name that no other test has.
+  const domain = 100, namespace = `px4_of_${process.pid}`;
+  const toml = `
+[run]
+mode = "realtime"
+agent_timeout_s = 2.0
+duration_s = 1000.0
+[agents]
+count = 2
+model = "double_integrator"
+position_m = [[0.0, 0.0, 0.8], [0.0, 3.0, 0.8]]
+[law]
+name = "consensus"
+leader = 1
+[output]
+save_plot = false
+[[vehicles]]
+agents = [1]
+kind = "px4"
+address = "127.0.0.1"
+domain = ${domain}
+namespace = "${namespace}"
+`;
+  const switchOff = switchOnPx4("--domain", String(domain), "--namespace", namespace, "--system-id", "2");
+  const browser = await launch(), run = await startRunOf(toml, "--go");
+  try {
+    const {page, troubles} = await open(browser, run.url);
+    await until(page, () => mascot.vehicles[0]?.phase === "flying");
+    await page.keyboard.press("t");
+    await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+    const [x, y] = await page.evaluate(() => mascot.positions);
+    await drag(page, 1);
+    await until(page, ([x, y]) => mascot.positions[0] > x + 0.5 && mascot.positions[1] > y + 0.2, [x, y]);
+    assert.equal(await page.textContent("#vehicles li .phase"), "flying");
+    await page.click('#vehicles button:text-is("Land all")');
+    await until(page, () => mascot.vehicles[0].phase === "landed");
+    assert.deepEqual(troubles, []);
+  } finally {
+    await run.stop();
+    await browser.close();
+    switchOff();
+  }
+});

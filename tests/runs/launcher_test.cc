@@ -293,6 +293,24 @@ TEST_F(OnOtherHosts, EventsByHandReachThem) {
   ExpectTheSameBytes();
 }
 
+TEST_F(OnOtherHosts, AVehicleIsFlownFromTheHostOfItsAgent) {
+  Connect();
+  std::vector<std::string> on_lab1{"netns", "exec", Laboratory::Name(1), MASCOT_BINARY_DIR "/fake_px4"};
+  on_lab1.insert(on_lab1.end(), {"--namespace", "px4_1", "--system-id", "2", "--domain", "100"});
+  Running px4("ip", on_lab1, folder_.File("px4"));
+  WriteFile(folder_.File("team.toml"),
+            "[run]\nmode = 'realtime'\nduration_s = 3.0\nagent_timeout_s = 5.0\n[agents]\ncount = 2\n"
+            "model = 'double_integrator'\nposition_m = [[0.0, 0.0, 0.8], [4.0, 0.0, 0.8]]\n[law]\nname = 'consensus'\n"
+            "p_gain = 0.05\n[[vehicles]]\nagents = [1]\nkind = 'px4'\ndomain = 100\naddress = '127.0.0.1'\n" +
+                laboratory_->Tables({"1"}));
+  const auto up = Fly(folder_.File("team.toml"), {"--go"});
+  ASSERT_EQ(up->Wait(), 0) << up->err();
+  EXPECT_THAT(up->err(), AllOf(HasSubstr("vehicle 1: flying"), HasSubstr("vehicle 1: landed")));
+  px4.Signal(SIGTERM);
+  EXPECT_EQ(px4.Wait(), 0) << px4.err();
+  ExpectNothingIsLeft();
+}
+
 TEST_F(OnOtherHosts, AHostThatDiesEndsTheRunAndIsNamed) {
   const auto up = FlyForLong();
   for (const pid_t pid : laboratory_->On(2, "orchestrator host")) SignalTo(pid, SIGKILL);

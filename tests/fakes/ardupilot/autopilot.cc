@@ -26,7 +26,7 @@ Motion ArdupilotAutopilot::motion() const {
 }
 
 std::vector<std::uint8_t> ArdupilotAutopilot::failsafes() const {
-  if (t_s() < options_.faults.battery_low_at_s) return {};
+  if (body_.flown_s() < options_.faults.battery_low_at_s) return {};
   return {kBatteryFailsafe};
 }
 
@@ -74,7 +74,7 @@ void ArdupilotAutopilot::SetVelocity(const Eigen::Vector3d& v_ENU) {
 
 void ArdupilotAutopilot::Step() {
   ++steps_;
-  if (t_s() >= options_.faults.pilot_at_s && mode_ == kGuided) Enter(kLoiter);
+  if (body_.flown_s() >= options_.faults.pilot_at_s && mode_ == kGuided) Enter(kLoiter);
   if (!failsafes().empty() && is_flying()) Enter(kLand);
   if (is_armed_ && !has_flown_ && !takeoff_m_ && t_s() - armed_at_s_ > kDisarmUnflown_s) is_armed_ = false;
   if (is_armed_ && has_flown_ && body_.resting_s() > kDisarmLanded_s) is_armed_ = false;

@@ -2,11 +2,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "base/motion.h"
+#include "tests/fakes/options.h"
 #include "tests/fakes/quadrotor.h"
 
 namespace mascot::fakes {
@@ -15,13 +15,9 @@ namespace mascot::fakes {
 // take-off that it does itself. World east, north, up from where it was switched on, which is its home. Time is that
 // since then (s).
 
-/// What a fake does wrong, on purpose; times in seconds.
-struct ArdupilotFaults {
-  bool refuses_arming = false;                                     ///< its pre-arm checks fail
-  double silent_from_s = std::numeric_limits<double>::infinity();  ///< no radio from then on
-  double silent_to_s = std::numeric_limits<double>::infinity();
-  double pilot_at_s = std::numeric_limits<double>::infinity();  ///< a switch on the remote control: mode LOITER
-  double battery_low_at_s = std::numeric_limits<double>::infinity();
+struct ArdupilotFaults : Faults {
+  double pilot_at_s = kNever_s;  ///< a switch on the remote control: mode LOITER
+  double battery_low_at_s = kNever_s;
 };
 
 struct ArdupilotOptions {
@@ -50,9 +46,11 @@ class ArdupilotAutopilot {
   bool is_armed() const { return is_armed_; }
   Mode mode() const { return mode_; }
   bool is_flying() const { return is_armed_ && body_.resting_s() == 0 && body_.height_m() > 0.05; }
-  double battery() const { return t_s() < options_.faults.battery_low_at_s ? 0.9 : 0.1; }  ///< share that is left
+  double battery() const {
+    return body_.flown_s() < options_.faults.battery_low_at_s ? 0.9 : 0.1;
+  }  ///< share that is left
   std::vector<std::uint8_t> failsafes() const;
-  bool HasRadio() const { return t_s() < options_.faults.silent_from_s || t_s() >= options_.faults.silent_to_s; }
+  bool HasRadio() const { return !options_.faults.IsSilent(body_); }
   Motion motion() const;  ///< as its filter has it, from its home
 
  private:

@@ -23,8 +23,7 @@ namespace geometry = geometry_msgs::msg;
 struct Options {
   ArdupilotOptions autopilot;
   std::string name_space = "ap";
-  int domain = 0;
-  bool any_interface = false;
+  OnDds on_dds;
 };
 
 geometry::Vector3 ToMessage(const Eigen::Vector3d& v) {
@@ -38,9 +37,7 @@ geometry::Vector3 ToMessage(const Eigen::Vector3d& v) {
 class FakeArdupilot {
  public:
   explicit FakeArdupilot(const Options& options)
-      : options_(options),
-        autopilot_(options.autopilot),
-        bridge_(options.domain, "fake_ardupilot", options.any_interface) {
+      : options_(options), autopilot_(options.autopilot), bridge_(options.on_dds, "fake_ardupilot") {
     constexpr auto kReliable = dds::RELIABLE_RELIABILITY_QOS;
     constexpr auto kBestEffort = dds::BEST_EFFORT_RELIABILITY_QOS;
     velocities_ = bridge_.In<geometry::TwistStampedPubSubType>(Topic("cmd_vel"), Geometry("TwistStamped"));
@@ -156,18 +153,12 @@ class FakeArdupilot {
 int Main(int argc, char** argv) {
   Options options;
   std::vector<double> place = {0, 0, 0};
-  CLI::App app("A copter with ArduPilot that is not there.", "fake_ardupilot");
-  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  app.add_option("--domain", options.domain)->check(CLI::Range(0, 232));
-  app.add_option("--namespace", options.name_space);
-  app.add_option("--place", place, "east,north,up of where it is switched on (m)")->delimiter(',')->expected(3);
-  app.add_flag("--any-interface", options.any_interface, "Not 127.0.0.1 alone");
   ArdupilotFaults& faults = options.autopilot.faults;
-  app.add_flag("--refuses-arming", faults.refuses_arming);
-  app.add_option("--silent-from-s", faults.silent_from_s);
-  app.add_option("--silent-to-s", faults.silent_to_s);
-  app.add_option("--pilot-at-s", faults.pilot_at_s);
-  app.add_option("--battery-low-at-s", faults.battery_low_at_s);
+  FakeApp app("A copter with ArduPilot that is not there.", "fake_ardupilot", options.on_dds, faults);
+  app.add_option("--namespace", options.name_space, "Before the names of its topics");
+  app.add_option("--place", place, "east,north,up of where it is switched on (m)")->delimiter(',')->expected(3);
+  app.AddTime("--pilot-at-s", faults.pilot_at_s, "A pilot takes over with the remote control");
+  app.AddTime("--battery-low-at-s", faults.battery_low_at_s, "Its battery is low");
   CLI11_PARSE(app, argc, argv);
   options.autopilot.place_ENU = {place[0], place[1], place[2]};
   FakeArdupilot fake(options);

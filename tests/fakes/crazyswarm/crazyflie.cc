@@ -35,7 +35,7 @@ std::uint16_t Crazyflie::supervisor() const {
 
 void Crazyflie::Step() {
   ++steps_;
-  if (t_s() >= options_.faults.tumbles_at_s && motors_run_) is_tumbled_ = true;
+  if (body_.flown_s() >= options_.faults.tumbles_at_s && motors_run_) is_tumbled_ = true;
   const auto wanted = WantedAcceleration_W();
   motors_run_ = wanted.has_value();
   body_.Step(wanted);

@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "base/motion.h"
+#include "tests/fakes/options.h"
 #include "tests/fakes/quadrotor.h"
 
 namespace mascot::fakes {
@@ -14,13 +14,9 @@ namespace mascot::fakes {
 // 500 ms after the last one, and stops its motors after 2 s. World: that of the motion capture. Time is that since it
 // was switched on (s).
 
-/// What a fake does wrong, on purpose; times in seconds.
-struct CrazyflieFaults {
-  bool refuses_arming = false;                                     ///< its supervisor does not let it arm
-  double tumbles_at_s = std::numeric_limits<double>::infinity();   ///< in the air from then on
-  double silent_from_s = std::numeric_limits<double>::infinity();  ///< no radio from then on
-  double silent_to_s = std::numeric_limits<double>::infinity();
-  double battery_low_at_s = std::numeric_limits<double>::infinity();
+struct CrazyflieFaults : Faults {
+  double tumbles_at_s = kNever_s;
+  double battery_low_at_s = kNever_s;
 };
 
 struct CrazyflieOptions {
@@ -55,9 +51,9 @@ class Crazyflie {
   void Step();
 
   double t_s() const { return static_cast<double>(steps_) * Quadrotor::kPeriod_s; }
-  bool HasRadio() const { return t_s() < options_.faults.silent_from_s || t_s() >= options_.faults.silent_to_s; }
+  bool HasRadio() const { return !options_.faults.IsSilent(body_); }
   std::uint16_t supervisor() const;
-  double battery_V() const { return t_s() < options_.faults.battery_low_at_s ? 4.0 : 3.1; }
+  double battery_V() const { return body_.flown_s() < options_.faults.battery_low_at_s ? 4.0 : 3.1; }
   Motion motion() const { return body_.motion(); }
 
  private:

@@ -131,26 +131,21 @@ class Link {
 };
 
 int Main(int argc, char** argv) {
-  int domain = 0;
-  bool any_interface = false, has_poses = true;
+  OnDds on_dds;
+  bool has_poses = true;
   std::vector<std::string> places;
   CrazyflieOptions options;
-  CLI::App app("A Crazyswarm2 server with Crazyflies that are not there.", "fake_crazyswarm");
-  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  app.add_option("--domain", domain)->check(CLI::Range(0, 232));
+  CrazyflieFaults& faults = options.faults;
+  FakeApp app("A Crazyswarm2 server with Crazyflies that are not there; the first one does wrong.", "fake_crazyswarm",
+              on_dds, faults);
   app.add_option("--crazyflie", places, "name:x,y,z: where it stands (m)")
       ->required()
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app.add_flag("--any-interface", any_interface, "Not 127.0.0.1 alone");
   app.add_flag("!--no-poses", has_poses, "Without the topic /poses of the motion capture");
-  CrazyflieFaults& faults = options.faults;  // of the first
-  app.add_flag("--refuses-arming", faults.refuses_arming);
-  app.add_option("--tumbles-at-s", faults.tumbles_at_s);
-  app.add_option("--silent-from-s", faults.silent_from_s);
-  app.add_option("--silent-to-s", faults.silent_to_s);
-  app.add_option("--battery-low-at-s", faults.battery_low_at_s);
+  app.AddTime("--tumbles-at-s", faults.tumbles_at_s, "It tumbles");
+  app.AddTime("--battery-low-at-s", faults.battery_low_at_s, "Its battery is low");
   CLI11_PARSE(app, argc, argv);
-  Bridge bridge(domain, "fake_crazyswarm", any_interface);
+  Bridge bridge(on_dds, "fake_crazyswarm");
   auto* const poses_out = bridge.Out<tracking::NamedPoseArrayPubSubType>(
       "rt/poses", "motion_capture_tracking_interfaces::msg::dds_::NamedPoseArray_", dds::BEST_EFFORT_RELIABILITY_QOS);
   std::vector<std::unique_ptr<Link>> links;

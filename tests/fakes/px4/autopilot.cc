@@ -1,5 +1,8 @@
 #include "tests/fakes/px4/autopilot.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 namespace mascot::fakes {
@@ -37,7 +40,10 @@ Px4Odometry Px4Autopilot::odometry() const {
           .reset_counter = resets_};
 }
 
-void Px4Autopilot::OnSignOfLife() {
+void Px4Autopilot::OnSignOfLife(const std::string& controlled) {
+  if (options_.faults.hears_no_signs_of_life) return;
+  if (controlled_ != controlled) words_.push_back("is told its " + controlled);
+  controlled_ = controlled;
   if (t_s() - sign_of_life_s_ > kSignsEvery_s) signs_since_s_ = t_s();
   sign_of_life_s_ = t_s();
 }
@@ -92,13 +98,17 @@ void Px4Autopilot::Enter(NavState state, const std::string& words) {
 }
 
 void Px4Autopilot::Disarm() {
-  if (std::exchange(is_armed_, false)) words_.push_back("disarmed");
+  if (!std::exchange(is_armed_, false)) return;
+  const Eigen::Vector3d way_ENU = body_.motion().p_WB - body_.boot_ENU();
+  words_.push_back(
+      fmt::format("disarmed, {:.2f} m east and {:.2f} m north of where it was switched on; highest: {:.2f} m",
+                  way_ENU.x(), way_ENU.y(), highest_m_));
 }
 
 void Px4Autopilot::Step() {
   ++steps_;
   const Px4Faults& faults = options_.faults;
-  if (faults.reset_at_s && resets_ == 0 && t_s() >= *faults.reset_at_s) {
+  if (resets_ == 0 && body_.flown_s() >= faults.reset_at_s) {
     shift_NED_ = faults.reset_NED;
     ++resets_;
   }
@@ -112,7 +122,7 @@ void Px4Autopilot::Step() {
 }
 
 void Px4Autopilot::LookAtFailsafes() {
-  if (t_s() >= options_.faults.pilot_at_s && nav_state_ == kOffboard) Enter(kPosition, "its pilot has it");
+  if (body_.flown_s() >= options_.faults.pilot_at_s && nav_state_ == kOffboard) Enter(kPosition, "its pilot has it");
   if (is_armed_ && nav_state_ == kOffboard && t_s() - sign_of_life_s_ > options_.offboard_loss_s)
     Enter(kLand, "no sign of life: lands");
   if (!is_armed_) return;
@@ -121,9 +131,10 @@ void Px4Autopilot::LookAtFailsafes() {
 }
 
 void Px4Autopilot::LookAtGround() {
-  constexpr double kFor_s = 0.3, kAbove_m = 0.06;
+  constexpr double kFor_s = 0.3;
   is_landed_ = body_.resting_s() >= kFor_s;
-  has_flown_ = has_flown_ || body_.height_m() > kAbove_m;
+  highest_m_ = std::max(highest_m_, body_.height_m());
+  has_flown_ = has_flown_ || body_.height_m() > Quadrotor::kOffTheGround_m;
 }
 
 /// As its position controller does: what is not controlled is not looked at.

@@ -3,12 +3,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "tests/fakes/options.h"
 #include "tests/fakes/quadrotor.h"
 
 namespace mascot::fakes {
@@ -16,15 +16,12 @@ namespace mascot::fakes {
 // A PX4 autopilot and its quadrotor, as the published rules of its offboard mode have them. World NED, body FRD. The
 // origin of its local frame is where it was switched on. Time is that of its own clock: seconds since that.
 
-/// What a fake does wrong, on purpose; times since it was switched on (s).
-struct Px4Faults {
-  bool refuses_arming = false;            ///< as one without a ground station and a remote control does
-  bool has_no_heading = false;            ///< its odometry is in a frame of unknown heading
-  std::optional<double> reset_at_s = {};  ///< its estimator moves the origin of its frame by `reset_NED`
+struct Px4Faults : Faults {
+  bool has_no_heading = false;  ///< its odometry is in a frame of unknown heading
+  bool hears_no_signs_of_life = false;
+  double reset_at_s = kNever_s;  ///< its estimator moves the origin of its frame by `reset_NED`
   Eigen::Vector3d reset_NED = {1, -2, 0.5};
-  double silent_from_s = std::numeric_limits<double>::infinity();  ///< no radio from then on
-  double silent_to_s = std::numeric_limits<double>::infinity();
-  double pilot_at_s = std::numeric_limits<double>::infinity();  ///< a switch on the remote control: position mode
+  double pilot_at_s = kNever_s;  ///< a switch on the remote control: position mode
 };
 
 struct Px4Options {
@@ -60,8 +57,8 @@ class Px4Autopilot {
 
   explicit Px4Autopilot(const Px4Options& options);
 
-  // From the companion computer. A sign of life says what the set-points control.
-  void OnSignOfLife();
+  // From the companion computer. A sign of life says what the set-points control: "position".
+  void OnSignOfLife(const std::string& controlled);
   void OnSetpoint(const Px4Setpoint& setpoint) { setpoint_ = setpoint; }
   /// What it acknowledges; nothing: the command is for another system.
   std::optional<Result> OnCommand(const Px4Command& command);
@@ -73,7 +70,7 @@ class Px4Autopilot {
   bool is_armed() const { return is_armed_; }
   NavState nav_state() const { return nav_state_; }
   bool is_landed() const { return is_landed_; }
-  bool HasRadio() const { return t_s() < options_.faults.silent_from_s || t_s() >= options_.faults.silent_to_s; }
+  bool HasRadio() const { return !options_.faults.IsSilent(body_); }
   Px4Odometry odometry() const;
   /// What it has done since the last call, in words.
   std::vector<std::string> TakeWords() { return std::exchange(words_, {}); }
@@ -93,7 +90,8 @@ class Px4Autopilot {
   std::int64_t steps_ = 0;
   NavState nav_state_ = kHold;
   bool is_armed_ = false, is_landed_ = true, has_flown_ = false;
-  double armed_at_s_ = 0;
+  double armed_at_s_ = 0, highest_m_ = 0;
+  std::string controlled_;
   double sign_of_life_s_ = -1e9, signs_since_s_ = 0;
   std::optional<Px4Setpoint> setpoint_;
   Eigen::Vector3d hold_ENU_;                             // where it holds, or above which it lands

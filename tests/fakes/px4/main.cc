@@ -32,10 +32,9 @@ constexpr Release kReleases[] = {{"1.14", "vehicle_status", "vehicle_command_ack
 struct Options {
   Px4Options autopilot;
   std::string release = "1.16", name_space = "";
-  int domain = 0;
+  OnDds on_dds;
   double clock_s = 1000;  ///< its clock when it is switched on
   double loss = 0;        ///< share of samples that the radio loses, both ways
-  bool any_interface = false;
 };
 
 Eigen::Vector3d Vector(const std::array<float, 3>& numbers) {
@@ -61,7 +60,7 @@ class FakePx4 {
       : options_(options),
         release_(*std::ranges::find(kReleases, options.release, &Release::name)),
         autopilot_(options.autopilot),
-        bridge_(options.domain, "fake_px4_" + std::to_string(options.autopilot.system_id), options.any_interface) {
+        bridge_(options.on_dds, "fake_px4_" + std::to_string(options.autopilot.system_id)) {
     is_14_ = options_.release == "1.14";
     signs_ = is_14_ ? In<msg::OffboardControlModeOf14PubSubType>("offboard_control_mode", "OffboardControlMode")
                     : In<msg::OffboardControlModePubSubType>("offboard_control_mode", "OffboardControlMode");
@@ -110,8 +109,9 @@ class FakePx4 {
   bool Arrives() { return autopilot_.HasRadio() && chance_(random_) >= options_.loss; }
 
   void Take() {
-    const auto on_sign = [&](const auto&, const auto&) {
-      if (Arrives()) autopilot_.OnSignOfLife();
+    const auto on_sign = [&](const auto& sign, const auto&) {
+      if (Arrives())
+        autopilot_.OnSignOfLife(sign.position() ? "position" : sign.velocity() ? "velocity" : "acceleration");
     };
     const auto on_command = [&](const auto& command, const auto&) {
       if (Arrives()) Obey(command);
@@ -205,25 +205,21 @@ class FakePx4 {
 int Main(int argc, char** argv) {
   Options options;
   std::vector<double> place = {0, 0, 0};
-  CLI::App app("A PX4 autopilot that is not there.", "fake_px4");
-  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  Px4Faults& faults = options.autopilot.faults;
+  FakeApp app("A PX4 autopilot that is not there.", "fake_px4", options.on_dds, faults);
   std::vector<std::string> releases;
   for (const Release& release : kReleases) releases.emplace_back(release.name);
-  app.add_option("--release", options.release)->check(CLI::IsMember(releases));
-  app.add_option("--domain", options.domain)->check(CLI::Range(0, 232));
-  app.add_option("--namespace", options.name_space);
-  app.add_option("--system-id", options.autopilot.system_id)->check(CLI::Range(1, 255));
+  app.add_option("--release", options.release, "Whose messages it has")->check(CLI::IsMember(releases));
+  app.add_option("--namespace", options.name_space, "Before the names of its topics");
+  app.add_option("--system-id", options.autopilot.system_id, "As which it takes commands")->check(CLI::Range(1, 255));
   app.add_option("--place", place, "east,north,up of where it is switched on (m)")->delimiter(',')->expected(3);
-  app.add_option("--clock-s", options.clock_s);
-  app.add_option("--loss", options.loss)->check(CLI::Range(0.0, 1.0));
-  app.add_flag("--any-interface", options.any_interface, "Not 127.0.0.1 alone");
-  Px4Faults& faults = options.autopilot.faults;
-  app.add_flag("--refuses-arming", faults.refuses_arming);
-  app.add_flag("--no-heading", faults.has_no_heading);
-  app.add_option("--reset-at-s", faults.reset_at_s);
-  app.add_option("--silent-from-s", faults.silent_from_s);
-  app.add_option("--silent-to-s", faults.silent_to_s);
-  app.add_option("--pilot-at-s", faults.pilot_at_s);
+  app.add_option("--clock-s", options.clock_s, "Its clock when it is switched on (s)");
+  app.add_option("--loss", options.loss, "Share of samples that the radio loses, both ways")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_flag("--no-heading", faults.has_no_heading, "Its odometry is in a frame of unknown heading");
+  app.add_flag("--no-signs-of-life", faults.hears_no_signs_of_life, "It hears set-points, but no signs of life");
+  app.AddTime("--reset-at-s", faults.reset_at_s, "Its estimator moves its origin");
+  app.AddTime("--pilot-at-s", faults.pilot_at_s, "A pilot takes over with the remote control");
   CLI11_PARSE(app, argc, argv);
   options.autopilot.place_ENU = {place[0], place[1], place[2]};
   FakePx4 fake(options);

@@ -74,9 +74,10 @@ builtin_interfaces::msg::Duration Seconds(int seconds) {
 
 class Script {
  public:
-  Script(int domain, std::string name)
+  Script(int domain, std::string name, bool talks_nonsense)
       : name_(std::move(name)),
-        bridge_(domain, "script", /*any_interface=*/false),
+        talks_nonsense_(talks_nonsense),
+        bridge_({.domain = domain}, "script"),
         poses_(bridge_.In<geometry_msgs::msg::PoseStampedPubSubType>("rt/" + name_ + "/pose",
                                                                      "geometry_msgs::msg::dds_::PoseStamped_")),
         full_state_(bridge_.Out<cf::msg::FullStatePubSubType>("rt/" + name_ + "/cmd_full_state",
@@ -136,6 +137,9 @@ class Script {
     state.pose().position().z(place[2]);
     state.pose().orientation().w(1);
     full_state_->write(&state);
+    if (!talks_nonsense_) return;
+    state.pose().position().z(std::nan(""));
+    full_state_->write(&state);
   }
   void Land() {
     Service<cf::srv::NotifySetpointsStop_Request, cf::srv::NotifySetpointsStop_RequestPubSubType,
@@ -170,6 +174,7 @@ class Script {
   }
 
   const std::string name_;
+  const bool talks_nonsense_;
   Bridge bridge_;
   dds::DataReader* const poses_;
   dds::DataWriter* const full_state_;
@@ -184,9 +189,11 @@ int main(int argc, char** argv) {
   std::string name = "cf1";
   app.add_option("--domain", domain, "DDS domain")->required();
   app.add_option("--crazyflie", name, "the one that is looked at");
+  bool talks_nonsense = false;
+  app.add_flag("--nonsense", talks_nonsense, "streams set-points that are none, too");
   CLI11_PARSE(app, argc, argv);
   try {
-    mascot::fakes::Script(domain, name).Run();
+    mascot::fakes::Script(domain, name, talks_nonsense).Run();
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
