@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "vehicle/ardupilot/messages.h"
+#include "vehicle/measured_motion.h"
+#include "vehicle/topic_problems.h"
 
 namespace mascot {
 namespace ardupilot {
@@ -21,6 +23,8 @@ constexpr double kP_per_s = 1.0, kMaxCorrection_m_per_s = 1.0;
 /// A take-off by the autopilot itself is over this far below the height that it was asked for.
 constexpr double kUp_m = 0.3;
 constexpr auto kAskToTakeOffEvery = 1s;
+
+constexpr std::string_view kStatus = "status", kPose = "pose/filtered", kTwist = "twist/filtered", kBattery = "battery";
 
 std::string FailsafeText(std::uint8_t failsafe) {
   switch (failsafe) {
@@ -55,18 +59,20 @@ class Ardupilot final : public Autopilot {
     AnnounceService("arm_motors", "ArmMotors", "arming is refused: its pre-arm checks, or its ground station, say why");
     AnnounceService("mode_switch", "ModeSwitch", "the mode is refused");
     AnnounceService("experimental/takeoff", "Takeoff", "taking off is refused");
-    Read("pose/filtered", "geometry_msgs::msg::dds_::PoseStamped_", [this](const Bytes& sample) { OnPose(sample); });
-    Read("twist/filtered", "geometry_msgs::msg::dds_::TwistStamped_", [this](const Bytes& sample) { OnTwist(sample); });
-    domain_.ReadFromLast(Topic("status"), "ardupilot_msgs::msg::dds_::Status_", [this](const Bytes& sample) {
+    Read(kPose, "geometry_msgs::msg::dds_::PoseStamped_", [this](const Bytes& sample) { OnPose(sample); });
+    Read(kTwist, "geometry_msgs::msg::dds_::TwistStamped_", [this](const Bytes& sample) { OnTwist(sample); });
+    domain_.ReadFromLast(Topic(kStatus), "ardupilot_msgs::msg::dds_::Status_", [this](const Bytes& sample) {
       OnStatus(sample);  // which comes when it changes
       on_news_();
     });
-    Read("battery", "sensor_msgs::msg::dds_::BatteryState_", [this](const Bytes& sample) { OnBattery(sample); });
+    Read(kBattery, "sensor_msgs::msg::dds_::BatteryState_", [this](const Bytes& sample) { OnBattery(sample); });
   }
 
   VehicleReport Report() override {
     const std::lock_guard lock(mutex_);
-    return report_;
+    VehicleReport report = report_;
+    report.problem = problems_.First();
+    return report;
   }
 
   void Stream(const VehicleSetpoint& setpoint) override {
@@ -133,12 +139,10 @@ class Ardupilot final : public Autopilot {
   void OnPose(const Bytes& sample) {
     const auto pose = ReadPose(sample);
     const std::lock_guard lock(mutex_);
-    if (!pose) return Unknown("pose/filtered", sample);
-    if (!pose->p.allFinite()) return;
-    Motion motion = report_.motion_L.value_or(Motion{});
-    motion.p_WB = pose->p;
-    motion.q_WB = pose->q.normalized();
-    report_.motion_L = motion;
+    if (!pose) return Unknown(kPose, sample);
+    heard_.p_WB = pose->p;
+    heard_.q_WB = pose->q;
+    if (!Measure(kPose)) return;
     report_.measured_at = Clock::now();
     if (is_known_) report_.status_at = report_.measured_at;  // a status holds until the next one
     ++report_.motions;
@@ -146,15 +150,15 @@ class Ardupilot final : public Autopilot {
   void OnTwist(const Bytes& sample) {
     const auto twist = ReadTwist(sample);
     const std::lock_guard lock(mutex_);
-    if (!twist) return Unknown("twist/filtered", sample);
-    if (!report_.motion_L) return;
-    report_.motion_L->v_WB = twist->v;
-    report_.motion_L->w_WB_B = twist->w_B;
+    if (!twist) return Unknown(kTwist, sample);
+    heard_.v_WB = twist->v;
+    heard_.w_WB_B = twist->w_B;
+    if (report_.motion_L) Measure(kTwist);
   }
   void OnStatus(const Bytes& sample) {
     const auto status = ReadStatus(sample);
     const std::lock_guard lock(mutex_);
-    if (!status) return Unknown("status", sample);
+    if (!status) return Unknown(kStatus, sample);
     is_known_ = true;
     report_.release = "ArduPilot";
     report_.status_at = Clock::now();
@@ -162,17 +166,27 @@ class Ardupilot final : public Autopilot {
     report_.follows = status->mode == Status::kGuided;
     report_.is_landing = status->mode == Status::kLand;
     report_.is_on_ground = !status->is_flying;
-    report_.problem = ProblemOf(*status);
+    problems_.Set(kStatus, ProblemOf(*status));
   }
   void OnBattery(const Bytes& sample) {
     const auto battery = ReadBattery(sample);
     const std::lock_guard lock(mutex_);
-    if (!battery) return Unknown("battery", sample);
+    if (!battery) return Unknown(kBattery, sample);
+    problems_.Set(kBattery, "");
     report_.battery = std::isfinite(*battery) ? battery : std::nullopt;
   }
-  /// With mutex_.
+
+  // With mutex_.
   void Unknown(std::string_view topic, const Bytes& sample) {
-    report_.problem = fmt::format("{} bytes of {} are no such message", sample.size(), topic);
+    problems_.Set(topic, fmt::format("{} bytes of {} are no such message", sample.size(), topic));
+  }
+  /// Takes what `heard_` says now, of which `topic` is news; false, if nothing can be flown by it.
+  bool Measure(std::string_view topic) {
+    problems_.Set(topic, WhyNotMeasured(heard_));
+    if (!WhyNotMeasured(heard_).empty()) return false;
+    report_.motion_L = heard_;
+    report_.motion_L->q_WB.normalize();
+    return true;
   }
 
   Eigen::Vector3d VelocityTo(const VehicleSetpoint& setpoint, const Eigen::Vector3d& p) const {
@@ -187,8 +201,10 @@ class Ardupilot final : public Autopilot {
 
   const VehicleConfig vehicle_;
   const std::function<void()> on_news_;
-  std::mutex mutex_;  // guards what is below
-  VehicleReport report_;
+  std::mutex mutex_;      // guards what is below
+  VehicleReport report_;  // its `problem` is in problems_
+  TopicProblems problems_{{kStatus, kPose, kTwist, kBattery}};
+  Motion heard_;           // good or not
   bool is_known_ = false;  // its status has been heard
   double rest_z_ = 0;      // where it stood before it was armed
   bool is_up_ = false;     // it has taken off since it was armed

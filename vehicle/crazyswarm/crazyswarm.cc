@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "vehicle/crazyswarm/messages.h"
+#include "vehicle/measured_motion.h"
+#include "vehicle/topic_problems.h"
 
 namespace mascot {
 namespace crazyswarm {
@@ -22,7 +24,8 @@ constexpr double kEmpty_V = 3.0, kFull_V = 4.2;
 constexpr double kSink_m_per_s = 0.3, kBelow_m = 0.05, kDown_m = 0.06;
 constexpr auto kDownFor = 500ms;
 constexpr double kSmoothing_s = 0.05;  // time constant of velocities
-constexpr auto kFreshPoses = 500ms;    // then those of `poses` are preferred to `pose`
+constexpr std::string_view kStatus = "status", kPoses = "poses", kPose = "pose";
+constexpr auto kFreshPoses = 500ms;  // then those of `poses` are preferred to `pose`
 
 double Seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
 
@@ -40,8 +43,8 @@ class Crazyswarm final : public Autopilot {
                      Reliability::kReliable);
     domain_.Read("rt/poses", "motion_capture_tracking_interfaces::msg::dds_::NamedPoseArray_",
                  [this](const Bytes& sample) { OnPoses(sample); });
-    domain_.Read(In("pose"), "geometry_msgs::msg::dds_::PoseStamped_", [this](const Bytes& sample) { OnPose(sample); });
-    domain_.Read(In("status"), "crazyflie_interfaces::msg::dds_::Status_",
+    domain_.Read(In(kPose), "geometry_msgs::msg::dds_::PoseStamped_", [this](const Bytes& sample) { OnPose(sample); });
+    domain_.Read(In(kStatus), "crazyflie_interfaces::msg::dds_::Status_",
                  [this](const Bytes& sample) { OnStatus(sample); });
   }
 
@@ -52,6 +55,7 @@ class Crazyswarm final : public Autopilot {
     // When set-points have sunk to the ground, its motors are left to stop.
     report.is_armed = report_.is_armed && !(is_landing_ && IsDown());
     report.follows = !report_.release.empty();  // it has no other modes
+    report.problem = problems_.First();
     return report;
   }
 
@@ -95,38 +99,40 @@ class Crazyswarm final : public Autopilot {
   // In threads of Fast DDS.
   void OnPoses(const Bytes& sample) {
     const auto poses = ReadPoses(sample);
-    if (!poses) return Unknown("poses", sample);
+    if (!poses) return Unknown(kPoses, sample);
     const auto own = std::ranges::find(*poses, vehicle_.name_space, &Pose::name);
     if (own == poses->end()) return;
     {
       const std::lock_guard lock(mutex_);
       poses_at_ = Clock::now();
-      Measure(*own);
+      Measure(kPoses, *own);
     }
     on_news_();
   }
   void OnPose(const Bytes& sample) {
     const auto pose = ReadPose(sample);
-    if (!pose) return Unknown("pose", sample);
+    if (!pose) return Unknown(kPose, sample);
     {
       const std::lock_guard lock(mutex_);
       if (Clock::now() - poses_at_ < kFreshPoses) return;
-      Measure(*pose);
+      Measure(kPose, *pose);
     }
     on_news_();
   }
   void OnStatus(const Bytes& sample) {
     const auto status = ReadStatus(sample);
-    if (!status) return Unknown("status", sample);
+    if (!status) return Unknown(kStatus, sample);
     {
       const std::lock_guard lock(mutex_);
       report_.release = "Crazyswarm2";
       report_.status_at = Clock::now();
       report_.is_armed = status->Is(Status::kIsArmed) && status->Is(Status::kCanFly);
-      report_.battery = std::clamp((status->battery_V - kEmpty_V) / (kFull_V - kEmpty_V), 0.0, 1.0);
-      report_.problem = status->Is(Status::kIsTumbled)  ? "it has tumbled"
-                        : status->Is(Status::kIsLocked) ? "it is locked: switch it off and on again"
-                                                        : "";
+      report_.battery.reset();
+      if (std::isfinite(status->battery_V))
+        report_.battery = std::clamp((status->battery_V - kEmpty_V) / (kFull_V - kEmpty_V), 0.0, 1.0);
+      problems_.Set(kStatus, status->Is(Status::kIsTumbled)  ? "it has tumbled"
+                             : status->Is(Status::kIsLocked) ? "it is locked: switch it off and on again"
+                                                             : "");
       report_.refusal =
           status->Is(Status::kCanBeArmed) || status->Is(Status::kIsArmed) ? "" : "its supervisor does not let it arm";
     }
@@ -134,11 +140,14 @@ class Crazyswarm final : public Autopilot {
   }
   void Unknown(std::string_view topic, const Bytes& sample) {
     const std::lock_guard lock(mutex_);
-    report_.problem = fmt::format("{} bytes of {} are no such message", sample.size(), topic);
+    problems_.Set(topic, fmt::format("{} bytes of {} are no such message", sample.size(), topic));
   }
 
   // With mutex_.
-  void Measure(const Pose& pose) {
+  void Measure(std::string_view topic, const Pose& pose) {
+    const std::string problem = WhyNotMeasured({.p_WB = pose.p, .q_WB = pose.q});
+    problems_.Set(topic, problem);
+    if (!problem.empty()) return;
     const auto now = Clock::now();
     Motion motion{.p_WB = pose.p, .q_WB = pose.q.normalized()};
     if (report_.motion_L) {
@@ -171,8 +180,9 @@ class Crazyswarm final : public Autopilot {
 
   const VehicleConfig vehicle_;
   const std::function<void()> on_news_;
-  std::mutex mutex_;  // guards what is below
-  VehicleReport report_;
+  std::mutex mutex_;      // guards what is below
+  VehicleReport report_;  // its `problem` is in problems_
+  TopicProblems problems_{{kStatus, kPoses, kPose}};
   Clock::time_point poses_at_ = {}, landing_since_ = {};
   double rest_z_ = 0;  // where it stood when it was first heard of
   std::optional<Clock::time_point> low_since_;

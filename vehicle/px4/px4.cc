@@ -6,13 +6,18 @@
 #include <utility>
 
 #include "vehicle/frames.h"
+#include "vehicle/measured_motion.h"
 #include "vehicle/px4/messages.h"
+#include "vehicle/topic_problems.h"
 
 namespace mascot {
 namespace px4 {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::string_view kStatus = "vehicle_status", kOdometry = "vehicle_odometry",
+                           kLandDetected = "vehicle_land_detected", kAck = "vehicle_command_ack";
 
 std::string TypeName(std::string_view message) { return fmt::format("px4_msgs::msg::dds_::{}_", message); }
 
@@ -21,11 +26,8 @@ std::string ProblemOf(const Odometry& odometry) {
   if (odometry.pose_frame != Odometry::PoseFrame::kNed)
     return "its heading is unknown (its odometry is not in NED): is there a compass?";
   if (odometry.velocity_frame == Odometry::VelocityFrame::kUnknown) return "the frame of its velocity is unknown";
-  if (!odometry.p_N.allFinite()) return "its position is unknown";
-  if (!odometry.v.allFinite() || !odometry.w_F.allFinite()) return "its velocity is unknown";
-  constexpr double kRounding = 0.01;
-  if (!(std::abs(odometry.q_NF.norm() - 1) < kRounding)) return "its orientation is unknown";
-  return "";
+  return WhyNotMeasured(
+      {.p_WB = odometry.p_N, .q_WB = odometry.q_NF, .v_WB = odometry.v, .w_WB_B = odometry.w_F});  // in any frame
 }
 
 Motion MotionOf(const Odometry& odometry) {
@@ -68,13 +70,15 @@ class Px4 final : public Autopilot {
       Read(topic, "VehicleStatus", [this, topic](const Bytes& sample) { OnStatus(topic, sample); });
     for (const std::string_view topic : kAckTopics)
       Read(topic, "VehicleCommandAck", [this, topic](const Bytes& sample) { OnAck(topic, sample); });
-    Read("vehicle_odometry", "VehicleOdometry", [this](const Bytes& sample) { OnOdometry(sample); });
-    Read("vehicle_land_detected", "VehicleLandDetected", [this](const Bytes& sample) { OnLandDetected(sample); });
+    Read(kOdometry, "VehicleOdometry", [this](const Bytes& sample) { OnOdometry(sample); });
+    Read(kLandDetected, "VehicleLandDetected", [this](const Bytes& sample) { OnLandDetected(sample); });
   }
 
   VehicleReport Report() override {
     const std::lock_guard lock(mutex_);
-    return report_;
+    VehicleReport report = report_;
+    report.problem = problems_.First();
+    return report;
   }
 
   void Stream(const VehicleSetpoint& setpoint) override {
@@ -137,8 +141,7 @@ class Px4 final : public Autopilot {
     const auto status = ReadStatus(topic, sample, unknown);
     const std::lock_guard lock(mutex_);
     report_.status_at = Clock::now();
-    status_problem_ = unknown.words;
-    SetProblem();
+    problems_.Set(kStatus, unknown.words);
     if (!status) return;
     release_ = status->release;
     report_.release = fmt::format("PX4 {}", Name(status->release));
@@ -150,9 +153,9 @@ class Px4 final : public Autopilot {
     UnknownSample unknown;
     const auto odometry = ReadOdometry(sample, unknown);
     const std::lock_guard lock(mutex_);
-    odometry_problem_ = odometry ? ProblemOf(*odometry) : unknown.words;
-    SetProblem();
-    if (!odometry_problem_.empty() || IsLate(odometry->timestamp_us)) return;
+    const std::string problem = odometry ? ProblemOf(*odometry) : unknown.words;
+    problems_.Set(kOdometry, problem);
+    if (!problem.empty() || IsLate(odometry->timestamp_us)) return;
     if (resets_heard_ && odometry->reset_counter != *resets_heard_) ++report_.resets;
     resets_heard_ = odometry->reset_counter;
     report_.motion_L = MotionOf(*odometry);
@@ -163,12 +166,14 @@ class Px4 final : public Autopilot {
     UnknownSample unknown;
     const auto land = ReadLandDetected(sample, unknown);
     const std::lock_guard lock(mutex_);
+    problems_.Set(kLandDetected, unknown.words);
     if (land) report_.is_on_ground = land->landed;
   }
   void OnAck(std::string_view topic, const Bytes& sample) {
     UnknownSample unknown;
     const auto ack = ReadAck(topic, sample, unknown);
     const std::lock_guard lock(mutex_);
+    problems_.Set(kAck, unknown.words);
     if (ack) report_.refusal = RefusalOf(*ack);
   }
   /// Whether a newer sample has come before; a clock that goes back by seconds is that of a vehicle that has begun
@@ -179,16 +184,15 @@ class Px4 final : public Autopilot {
     if (!is_late) newest_us_ = timestamp_us;
     return is_late;
   }
-  void SetProblem() { report_.problem = status_problem_.empty() ? odometry_problem_ : status_problem_; }
 
   const VehicleConfig vehicle_;
   const std::function<void()> on_news_;
-  std::mutex mutex_;  // guards what is below
-  VehicleReport report_;
+  std::mutex mutex_;      // guards what is below
+  VehicleReport report_;  // its `problem` is in problems_
+  TopicProblems problems_{{kStatus, kOdometry, kLandDetected, kAck}};
   Release release_ = Release::k1_15;
   std::optional<std::uint8_t> resets_heard_;
   std::uint64_t newest_us_ = 0;
-  std::string status_problem_, odometry_problem_;
 
   OutsideDomain domain_;  // last, so destroyed first: its readers call the members above
 };
