@@ -28,7 +28,7 @@ void Commander::Plan(const Eigen::Vector3d& to_W, double duration_s, const Eigen
   from_W_ = p_W;
   to_W_ = to_W;
   begin_s_ = now;
-  duration_s_ = std::max(duration_s, 0.0);
+  duration_s_ = duration_s;
   lands_ = false;
   trajectory_ = {};
 }
@@ -51,7 +51,7 @@ void Commander::GoTo(const Eigen::Vector3d& goal_W, bool relative, double durati
 
 void Commander::Follow(const Trajectory& trajectory, double timescale, bool reversed, bool relative,
                        const Eigen::Vector3d& p_W, double now) {
-  if (!motors_run_ || trajectory.empty() || !(timescale > 0)) return;
+  if (!motors_run_ || trajectory.empty()) return;
   const Eigen::Vector3d begin = trajectory.At(reversed ? trajectory.duration_s() : 0).p;
   const Eigen::Vector3d end = trajectory.At(reversed ? 0 : trajectory.duration_s()).p;
   const Eigen::Vector3d shift = relative ? Eigen::Vector3d(p_W - begin) : Eigen::Vector3d::Zero();

@@ -25,11 +25,12 @@ class Commander {
   explicit Commander(const Eigen::Vector3d& ground_W) : from_W_(ground_W), to_W_(ground_W) {}
 
   void Arm(bool arm);
-  // Orders. They begin at `now`, where the vehicle is, and take `duration_s`; heights are those of W.
+  // Orders. They begin at `now`, where the vehicle is, and take `duration_s`, of 0 or more; heights are those of W.
   void TakeOff(double height_m, double duration_s, const Eigen::Vector3d& p_W, double now);
   void Land(double height_m, double duration_s, const Eigen::Vector3d& p_W, double now);
   void GoTo(const Eigen::Vector3d& goal_W, bool relative, double duration_s, const Eigen::Vector3d& p_W, double now);
-  /// Along a trajectory, `timescale` times as slow; backwards, if `reversed`; from where the vehicle is, if `relative`.
+  /// Along a trajectory, `timescale` (above 0) times as slow; backwards, if `reversed`; from where the vehicle is, if
+  /// `relative`.
   void Follow(const Trajectory& trajectory, double timescale, bool reversed, bool relative, const Eigen::Vector3d& p_W,
               double now);
   void Emergency();

@@ -51,8 +51,8 @@ std::vector<double> ActionOf(const std::optional<Setpoint>& setpoint, const Moti
 
 }  // namespace
 
-CrazyswarmServer::CrazyswarmServer(const Experiment& experiment)
-    : experiment_(experiment), actions_(experiment.agents.size()) {
+CrazyswarmServer::CrazyswarmServer(const Experiment& experiment, std::function<void(const std::string&)> warn)
+    : experiment_(experiment), warn_(std::move(warn)), actions_(experiment.agents.size()) {
   for (const AgentConfig& agent : experiment.agents)
     if (agent.takes_actions)
       crazyflies_.push_back(std::make_unique<Crazyflie>(
@@ -91,19 +91,32 @@ void CrazyswarmServer::OfferTopics(Crazyflie& crazyflie) {
 
 template <class Read>
 void CrazyswarmServer::Hear(Crazyflie& crazyflie, const std::string& topic, const std::string& type, const Read& read) {
-  domain_->Read(In(crazyflie.name, topic), MessageType(type), [this, &crazyflie, read](const Bytes& sample) {
+  domain_->Read(In(crazyflie.name, topic), MessageType(type), [this, &crazyflie, topic, read](const Bytes& sample) {
     const std::lock_guard lock(mutex_);
-    if (const auto setpoint = read(sample)) crazyflie.commander.Stream(*setpoint, now_s());
+    if (const auto setpoint = read(sample))
+      crazyflie.commander.Stream(*setpoint, now_s());
+    else
+      TellOfUnread(crazyflie.name + "/" + topic);
   });
+}
+
+/// With mutex_.
+void CrazyswarmServer::TellOfUnread(const std::string& name) {
+  if (unread_.insert(name).second)
+    warn_("warning: network.crazyswarm: a message of " + name +
+          " is left alone: it is too short, or says what cannot be (a number that is none, a negative duration)");
 }
 
 template <class Read, class Act>
 void CrazyswarmServer::Serve(const std::string& service, const std::string& type, const std::vector<Crazyflie*>& whom,
                              const Read& read, const Act& act) {
-  domain_->Serve(service, type, [this, whom, read, act](const Bytes& sample) {
-    const auto request = read(sample);
-    if (!request) return Bytes();
+  domain_->Serve(service, type, [this, service, whom, read, act](const Bytes& sample) {
     const std::lock_guard lock(mutex_);
+    const auto request = read(sample);
+    if (!request) {
+      TellOfUnread(service);
+      return Bytes();
+    }
     for (Crazyflie* const one : whom) act(*one, *request, now_s());
     return crazyswarm::EmptyReply();
   });

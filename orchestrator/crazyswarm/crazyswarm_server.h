@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,10 +24,12 @@ namespace mascot {
 /// A Crazyswarm2 server whose Crazyflies are simulated agents (network.crazyswarm): agent i, if its law takes actions,
 /// is cf<i>. It offers the topics and services by which scripts fly a swarm, and gives the agents accelerations: those
 /// of an order or a streamed set-point, and what corrects position and velocity. While the motors of a Crazyflie stand,
-/// so do its agent's rotors. Scripts may call from any thread; the rest is called in one.
+/// so do its agent's rotors. What a script sends that cannot be read is told, once for each topic and service. Scripts
+/// may call from any thread; the rest is called in one.
 class CrazyswarmServer final : public ActionSource, public RowSink {
  public:
-  explicit CrazyswarmServer(const Experiment& experiment);
+  /// `warn`: takes words for people, from any thread.
+  CrazyswarmServer(const Experiment& experiment, std::function<void(const std::string&)> warn);
   ~CrazyswarmServer() override;
 
   void OnDomain(int domain, const std::string& address) override;
@@ -51,11 +55,14 @@ class CrazyswarmServer final : public ActionSource, public RowSink {
              const Act& act);
   template <class Read>
   void Hear(Crazyflie& crazyflie, const std::string& topic, const std::string& type, const Read& read);
+  void TellOfUnread(const std::string& name);
   double now_s() const { return experiment_.time_s(tick_); }
 
   const Experiment& experiment_;
+  const std::function<void(const std::string&)> warn_;
   mutable std::mutex mutex_;  // guards what is below but domain_
   std::vector<std::unique_ptr<Crazyflie>> crazyflies_;
+  std::set<std::string> unread_;  // topics and services of which that was told
   std::int64_t tick_ = 0;
   std::vector<std::vector<double>> actions_;  // by id - 1
   std::optional<OutsideDomain> domain_;       // last, so destroyed first: its readers call the members above

@@ -9,6 +9,7 @@
 namespace mascot::crazyswarm {
 namespace {
 
+using eprosima::fastcdr::exception::BadParamException;
 using ros::Cdr;
 using ros::Fields;
 using ros::ReadAs;
@@ -21,9 +22,23 @@ constexpr std::size_t kLongestReply = 65'536;
 constexpr std::string_view kFrame = "world";
 constexpr float kFullBattery_V = 4.1F;
 
+// Numbers that a Crazyflie can be sent to. Refused is what is no number, or beyond all reason.
+double Sane(double number) {
+  constexpr double kBeyondReason = 1e6;  // m, m/s, m/s^2, s
+  if (!(std::abs(number) < kBeyondReason)) throw BadParamException("no number, or one beyond reason");
+  return number;
+}
+double Number(Fields& fields) { return Sane(double{fields.Next<float>()}); }
+Eigen::Vector3d Vector(Fields& fields) { return fields.Vector().unaryExpr(&Sane); }
+double Duration(Fields& fields) {
+  const double duration_s = fields.Duration();
+  if (duration_s < 0) throw BadParamException("a negative duration");
+  return Sane(duration_s);
+}
+
 std::array<double, Trajectory::kCoefficients> Coefficients(Fields& fields) {
   std::array<double, Trajectory::kCoefficients> coefficients{};
-  const auto read = fields.Sequence(Trajectory::kCoefficients, [&] { return double{fields.Next<float>()}; });
+  const auto read = fields.Sequence(Trajectory::kCoefficients, [&] { return Number(fields); });
   std::ranges::copy(read, coefficients.begin());
   return coefficients;
 }
@@ -59,8 +74,8 @@ std::optional<bool> ReadArm(std::span<const std::uint8_t> sample) {
 std::optional<HeightRequest> ReadHeight(std::span<const std::uint8_t> sample) {
   return ReadAs<HeightRequest>(sample, [](Fields& fields) {
     fields.Next<std::uint8_t>();  // group
-    const double height_m = fields.Next<float>();
-    return HeightRequest{height_m, fields.Duration()};
+    const double height_m = Number(fields);
+    return HeightRequest{height_m, Duration(fields)};
   });
 }
 
@@ -69,9 +84,9 @@ std::optional<GoToRequest> ReadGoTo(std::span<const std::uint8_t> sample) {
     GoToRequest request;
     fields.Next<std::uint8_t>();  // group
     request.relative = fields.Next<bool>();
-    request.goal = fields.Vector();
+    request.goal = Vector(fields);
     fields.Next<float>();  // yaw
-    request.duration_s = fields.Duration();
+    request.duration_s = Duration(fields);
     return request;
   });
 }
@@ -85,7 +100,7 @@ std::optional<UploadRequest> ReadUpload(std::span<const std::uint8_t> sample) {
       Trajectory::Piece piece;
       for (auto& axis : piece.axes) axis = Coefficients(fields);
       Coefficients(fields);  // of yaw
-      piece.duration_s = fields.Duration();
+      piece.duration_s = Duration(fields);
       return piece;
     });
     return request;
@@ -97,7 +112,8 @@ std::optional<FollowRequest> ReadFollow(std::span<const std::uint8_t> sample) {
     FollowRequest request;
     fields.Next<std::uint8_t>();  // group
     request.trajectory = fields.Next<std::uint8_t>();
-    request.timescale = fields.Next<float>();
+    request.timescale = Number(fields);
+    if (!(request.timescale > 0)) throw BadParamException("no timescale");
     request.reversed = fields.Next<bool>();
     request.relative = fields.Next<bool>();
     return request;
@@ -108,11 +124,11 @@ std::optional<Setpoint> ReadFullState(std::span<const std::uint8_t> sample) {
   return ReadAs<Setpoint>(sample, [](Fields& fields) {
     Setpoint setpoint;
     fields.Header();
-    setpoint.p_W = fields.Vector();
+    setpoint.p_W = Vector(fields);
     fields.Quaternion();
-    setpoint.v_W = fields.Vector();
+    setpoint.v_W = Vector(fields);
     fields.Vector();  // angular velocity
-    setpoint.a_W = fields.Vector();
+    setpoint.a_W = Vector(fields);
     return setpoint;
   });
 }
@@ -121,7 +137,7 @@ std::optional<Setpoint> ReadPosition(std::span<const std::uint8_t> sample) {
   return ReadAs<Setpoint>(sample, [](Fields& fields) {
     Setpoint setpoint{kFreeVector, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     fields.Header();
-    for (double& x : setpoint.p_W) x = fields.Next<float>();
+    for (double& x : setpoint.p_W) x = Number(fields);
     return setpoint;
   });
 }
@@ -129,16 +145,16 @@ std::optional<Setpoint> ReadPosition(std::span<const std::uint8_t> sample) {
 std::optional<Setpoint> ReadVelocityWorld(std::span<const std::uint8_t> sample) {
   return ReadAs<Setpoint>(sample, [](Fields& fields) {
     fields.Header();
-    return Setpoint{kFreeVector, fields.Vector(), Eigen::Vector3d::Zero()};
+    return Setpoint{kFreeVector, Vector(fields), Eigen::Vector3d::Zero()};
   });
 }
 
 std::optional<Setpoint> ReadHover(std::span<const std::uint8_t> sample, double yaw_rad) {
   return ReadAs<Setpoint>(sample, [yaw_rad](Fields& fields) {
     fields.Header();
-    const double forward = fields.Next<float>(), left = fields.Next<float>();
+    const double forward = Number(fields), left = Number(fields);
     fields.Next<float>();  // yaw rate
-    const double z = fields.Next<float>(), c = std::cos(yaw_rad), s = std::sin(yaw_rad);
+    const double z = Number(fields), c = std::cos(yaw_rad), s = std::sin(yaw_rad);
     return Setpoint{{kFree, kFree, z}, {c * forward - s * left, s * forward + c * left, 0}, Eigen::Vector3d::Zero()};
   });
 }

@@ -39,7 +39,8 @@ struct FollowRequest {
   bool reversed = false, relative = false;
 };
 
-// What a sample says; nothing if it is too short, or is no such message.
+// What a sample says; nothing if it is too short or no such message, or if it asks for what cannot be: a number that is
+// none or beyond all reason, a negative duration, a timescale of 0 or less.
 std::optional<bool> ReadArm(std::span<const std::uint8_t> sample);
 std::optional<HeightRequest> ReadHeight(std::span<const std::uint8_t> sample);
 std::optional<GoToRequest> ReadGoTo(std::span<const std::uint8_t> sample);

@@ -200,7 +200,8 @@ int Up(UpArgs& args) {
     sinks.push_back(&ros_sink.emplace(*ros_view, [&ros_view](const std::string& why) { ros_view->Fail(why); }));
   }
   std::optional<CrazyswarmServer> crazyswarm;
-  if (experiment.network.crazyswarm) sinks.push_back(&crazyswarm.emplace(experiment));
+  if (experiment.network.crazyswarm)
+    sinks.push_back(&crazyswarm.emplace(experiment, [&console](const std::string& words) { console.Warning(words); }));
   const RunSocket socket(experiment, std::filesystem::absolute(folder.path()).string(), args.engine.name, viewers.url(),
                          requests);
   EngineRun flight(args.engine.name, experiment, folder, sinks, &requests, console, stop, crew,

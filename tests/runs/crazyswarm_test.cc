@@ -23,7 +23,7 @@ TEST(Crazyswarm, AScriptTakesOffFliesStreamsAndLands) {
   Up up(folder, "run", folder.File("team.toml"), {});
   ASSERT_TRUE(Until([&] { return up.Said("DDS domain "); })) << up.err();
   const std::string said = up.err().substr(up.err().find("DDS domain ") + 11);
-  Running script(MASCOT_BINARY_DIR "/fake_script", {"--domain", std::to_string(std::stoi(said))},
+  Running script(MASCOT_BINARY_DIR "/fake_script", {"--domain", std::to_string(std::stoi(said)), "--nonsense"},
                  folder.File("script"));
   EXPECT_EQ(script.Wait(), 0) << script.out() << script.err();
   for (const char* words :
@@ -32,6 +32,9 @@ TEST(Crazyswarm, AScriptTakesOffFliesStreamsAndLands) {
     EXPECT_THAT(script.out(), HasSubstr(words));
   up.Signal(SIGINT);
   EXPECT_EQ(up.Wait(), 130) << up.err();
+  EXPECT_THAT(up.err(),
+              HasSubstr("warning: network.crazyswarm: a message of cf1/cmd_full_state is left alone: it is too "
+                        "short, or says what cannot be (a number that is none, a negative duration)"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -47,7 +48,7 @@ TEST(CrazyswarmRequests, OrdersAreRead) {
 }
 
 /// A trajectory of this many pieces, each with `coefficients` of an axis.
-Sample Upload(std::uint32_t pieces, std::uint32_t coefficients) {
+Sample Upload(std::uint32_t pieces, std::uint32_t coefficients, std::int32_t seconds = 1) {
   Sample upload;
   upload.Add(std::uint8_t{7}).Add(std::uint32_t{1}).Add(pieces);
   for (std::uint32_t piece = 0; piece < pieces; ++piece) {
@@ -56,7 +57,7 @@ Sample Upload(std::uint32_t pieces, std::uint32_t coefficients) {
       for (std::uint32_t k = 0; k < coefficients; ++k)
         upload.Add(static_cast<float>(10 * axis) + static_cast<float>(k));
     }
-    upload.Add(std::int32_t{1}).Add(std::uint32_t{0});
+    upload.Add(seconds).Add(std::uint32_t{0});
   }
   return upload;
 }
@@ -100,6 +101,38 @@ TEST(CrazyswarmRequests, SetpointsAreRead) {
   EXPECT_TRUE(ahead->v_W.isApprox(Vector3d(0, 1, 0), 1e-12)) << "it looks along y";
   EXPECT_EQ(ahead->p_W.z(), 0.5);
   EXPECT_TRUE(std::isnan(ahead->p_W.x()));
+}
+
+TEST(CrazyswarmRequests, WhatCannotBeIsRefused) {
+  EXPECT_FALSE(ReadUpload(Upload(2, 8, -1).bytes())) << "a piece that ends before it begins";
+  const auto takeoff = [](float height_m, std::int32_t seconds) {
+    return ReadHeight(Sample().Add(kGroup).Add(height_m).Add(seconds).Add(std::uint32_t{0}).bytes());
+  };
+  EXPECT_TRUE(takeoff(0.5F, 0));
+  EXPECT_FALSE(takeoff(0.5F, -1));
+  EXPECT_FALSE(takeoff(0.5F, 2'000'000));
+  const auto follow = [](float timescale) {
+    return ReadFollow(Sample().Add(kGroup).Add(kGroup).Add(timescale).Add(kGroup).Add(kGroup).bytes());
+  };
+  EXPECT_TRUE(follow(2));
+  for (const float timescale : {0.0F, -1.0F}) EXPECT_FALSE(follow(timescale)) << timescale;
+  for (const double wrong : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e7}) {
+    const auto narrow = static_cast<float>(wrong);
+    EXPECT_FALSE(takeoff(narrow, 1)) << wrong;
+    EXPECT_FALSE(follow(narrow)) << wrong;
+    const Sample goal = Sample().Add(kGroup).Add(kGroup).Doubles({1, 2, wrong}).Add(0.0F);
+    EXPECT_FALSE(ReadGoTo(Sample(goal).Add(std::int32_t{1}).Add(std::uint32_t{0}).bytes())) << wrong;
+    EXPECT_FALSE(ReadVelocityWorld(Sample().Header("").Doubles({wrong, 0, 0}).Add(0.0F).bytes())) << wrong;
+    EXPECT_FALSE(ReadPosition(Sample().Header("").Add(narrow).Add(0.0F).Add(0.0F).Add(0.0F).bytes())) << wrong;
+    EXPECT_FALSE(ReadHover(Sample().Header("").Add(0.0F).Add(narrow).Add(0.0F).Add(0.0F).bytes(), 0)) << wrong;
+    for (const std::size_t place : {0U, 8U, 14U}) {  // position, velocity, acceleration
+      std::array<double, 16> numbers = {};
+      numbers.at(place) = wrong;
+      Sample state = Sample().Header("");
+      for (const double number : numbers) state.Add(number);
+      EXPECT_FALSE(ReadFullState(state.bytes())) << wrong;
+    }
+  }
 }
 
 TEST(CrazyswarmRequests, ParametersAreAnswered) {
