@@ -308,11 +308,39 @@ def fmus():
     return files
 
 
+# --- what vehicles and scripts that fly Crazyflies send ------------------------------------------------------
+
+
+def vehicles():
+    """The first byte chooses among topics of the same message, and what a Crazyflie does meanwhile."""
+    stamp = struct.pack("<iI", 5, 6) + text("map")
+    pose = struct.pack("<7d", 1, 2, 3, 0, 0, 0, 1)
+    duration = struct.pack("<iI", 2, 500_000_000)
+    piece = b"".join(struct.pack("<I8f", 8, *range(8)) for _ in range(4)) + duration
+    odometry = struct.pack("<QQB3x7fB3x15fBB", 1, 1, 1, 1, 2, 3, 1, 0, 0, 0, 1, *[0.5] * 15, 3, 100)
+    bodies = {
+        **{f"px4_of_{length}_bytes": bytes(range(length)) for length in (20, 23, 25, 71, 80, 82, 83)},
+        "px4_odometry": odometry,
+        "pose": stamp + pose,
+        "twist": stamp + struct.pack("<6d", 1, 2, 3, 4, 5, 6),
+        "poses": stamp + struct.pack("<I", 1) + text("cf1") + pose,
+        "status": stamp + struct.pack("<BBBBBxxxI2B", 2, 1, 9, 1, 1, 2, 22, 24),
+        "names": struct.pack("<I", 2) + text("robots.cf1.uri") + text("a"),
+        "height": struct.pack("<B3xf", 0, 0.5) + duration,
+        "go_to": struct.pack("<BB6x3df", 0, 1, 1, 2, 3, 0.1) + duration,
+        "upload": struct.pack("<B3xII", 7, 0, 2) + piece + piece,
+        "follow": struct.pack("<BB2xfBB", 0, 7, 1.5, 1, 0),
+        "full_state": stamp + struct.pack("<16d", *range(16)),
+        "hover": stamp + struct.pack("<4f", 1, 0, 0.1, 0.5),
+    }
+    return {name: bytes([choices]) + CDR + body for choices, (name, body) in enumerate(bodies.items())}
+
+
 def main():
     programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release")
     for name, files in [("samples", samples()), ("recording", recordings(programs)), ("protocols", protocols()),
                         ("viewers", viewers()), ("serve", served()), ("network", networks()),
-                        ("fmu", fmus())]:
+                        ("fmu", fmus()), ("vehicles", vehicles())]:
         (CORPUS / name).mkdir(parents=True, exist_ok=True)
         for file, data in files.items():
             (CORPUS / name / file).write_bytes(data)
