@@ -23,17 +23,27 @@ constexpr Range kCorner_m = {-1e6, 1e6};
 struct KindTraits {
   VehicleKind kind;
   std::string_view name_space;
+  bool may_have_no_name;                ///< an empty namespace
   std::vector<SetpointKind> setpoints;  ///< the first is the default
   int system_id_ahead;                  ///< of the agent's number
+  bool arms_itself = false;
+  double farthest_m = 1e6;
 };
 const KindTraits& KindTraitsOf(VehicleKind kind) {
   static const KindTraits kKinds[] = {
       {VehicleKind::kPx4,
        "px4_{i}",
+       true,
        {SetpointKind::kReference, SetpointKind::kAcceleration, SetpointKind::kVelocity},
        1},  // MAV_SYS_ID of the simulation's instance i is i + 1
-      {VehicleKind::kCrazyswarm, "cf{i}", {SetpointKind::kReference, SetpointKind::kVelocity}, 0},
-      {VehicleKind::kArdupilot, "ap", {SetpointKind::kVelocity}, 0},
+      {VehicleKind::kCrazyswarm,
+       "cf{i}",
+       false,
+       {SetpointKind::kReference, SetpointKind::kVelocity},
+       0,
+       true,
+       32.767},  // set-points travel as int16 of mm
+      {VehicleKind::kArdupilot, "ap", false, {SetpointKind::kVelocity}, 0},
   };
   return *std::ranges::find(kKinds, kind, &KindTraits::kind);
 }
@@ -110,7 +120,7 @@ std::map<int, Eigen::Vector3d> ReadOrigins(Section& section, const std::vector<i
 std::string ReadNamespace(Section& section, const std::vector<int>& ids, VehicleKind kind) {
   const std::string text = section.Text("namespace", std::string(KindTraitsOf(kind).name_space));
   if (section.Wrong("namespace")) return text;
-  if (!IsNamespace(WithId(text, 1)))
+  if (!IsNamespace(WithId(text, 1)) || (text.empty() && !KindTraitsOf(kind).may_have_no_name))
     section.Fail("namespace", "expected a namespace of ROS 2 topics, such as \"px4_{i}\", got '" + text + "'");
   else if (ids.size() > 1 && text.find(kId) == text.npos)
     section.Fail("namespace",
@@ -128,10 +138,26 @@ void CheckAgentOf(Section& section, const AgentConfig& agent) {
                                        agent.id, agent.model));
 }
 
-void ReadVehicle(Section& section, Experiment& experiment) {
+/// Notes that an agent starts where its vehicle cannot be sent.
+void CheckStart(Section& section, const AgentConfig& agent, const VehicleConfig& vehicle) {
+  const Eigen::AngleAxisd turn(-vehicle.yaw_rad, Eigen::Vector3d::UnitZ());
+  const double farthest_m = (turn * (agent.p_W - vehicle.origin_W)).cwiseAbs().maxCoeff();
+  if (farthest_m > vehicle.farthest_m && !section.Wrong("agents"))
+    section.Fail("agents",
+                 fmt::format("expected agents that start within {:g} m of the origin of their vehicles' frames, "
+                             "along its axes, got agent {} at {:g} m",
+                             vehicle.farthest_m, agent.id, farthest_m));
+}
+
+/// The agent of each vehicle, by its domain and namespace.
+using FlownBy = std::map<std::pair<int, std::string>, int>;
+
+void ReadVehicle(Section& section, FlownBy& flown_by, Experiment& experiment) {
   VehicleConfig vehicle;
   const std::vector<int> ids = ReadAgentsOf(section, experiment.size());
   vehicle.kind = kVehicleKinds.Value(section.OneOf("kind"));
+  vehicle.arms_itself = KindTraitsOf(vehicle.kind).arms_itself;
+  vehicle.farthest_m = KindTraitsOf(vehicle.kind).farthest_m;
   const std::string name_space = ReadNamespace(section, ids, vehicle.kind);
   const int ahead = KindTraitsOf(vehicle.kind).system_id_ahead;
   const bool has_system_id = section.Has("system_id");
@@ -158,6 +184,13 @@ void ReadVehicle(Section& section, Experiment& experiment) {
     vehicle.origin_W = origins.at(id);
     if (vehicle.system_id > 255 && !section.Wrong("system_id"))
       section.Fail("system_id", fmt::format("expected at most 255, got {} for agent {}", vehicle.system_id, id));
+    CheckStart(section, agent, vehicle);
+    const auto [other, is_new] = flown_by.try_emplace({vehicle.domain, vehicle.name_space}, id);
+    if (!is_new && other->second != id && !section.Wrong("namespace"))
+      section.Fail("namespace",
+                   fmt::format("expected a namespace that no other vehicle of domain {} has, got '{}' of agents "
+                               "{} and {}",
+                               vehicle.domain, vehicle.name_space, other->second, id));
     agent.vehicle = vehicle;
     ++number;
   }
@@ -203,7 +236,9 @@ std::span<const Key> VehicleKeys() {
       key::Number("takeoff_m", Above(0, 100), "how high a vehicle climbs before it flies to its agent's start")
           .Default("1.0"),
       key::Points("fence", kCorner_m, "lowest and highest corner of a box in W; a vehicle that leaves it lands"),
-      key::Number("max_error_m", Above(0, 1e6), "a vehicle that is farther from its reference lands").Default("1.0"),
+      key::Number("max_error_m", Above(0, 1e6),
+                  "a vehicle that is farther from its reference lands, also if it is sent no positions")
+          .Default("1.0"),
       key::OneOf("on_loss", kOnVehicleLoss.names(),
                  "when another vehicle is lost. land: this one lands; hold: it flies on")
           .Default("\"land\""),
@@ -213,7 +248,8 @@ std::span<const Key> VehicleKeys() {
 
 void ReadVehicles(Section& document, Section& run, Experiment& experiment) {
   std::vector<Section> sections = FewTables(document, "vehicles", kMaxTables);
-  for (Section& section : sections) ReadVehicle(section, experiment);
+  FlownBy flown_by;
+  for (Section& section : sections) ReadVehicle(section, flown_by, experiment);
   if (sections.empty()) return;
   if (experiment.run.mode != Mode::kRealtime && !run.Wrong("mode"))
     run.Fail("mode", "expected \"realtime\" with [[vehicles]], got \"lockstep\"");
