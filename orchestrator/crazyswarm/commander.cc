@@ -75,11 +75,12 @@ void Commander::Emergency() {
   streamed_.reset();
 }
 
-void Commander::NotifySetpointsStop(double now) {
+void Commander::NotifySetpointsStop(const Eigen::Vector3d& p_W, double now) {
   if (!streamed_) return;
-  from_W_ = to_W_ = streamed_->p_W.allFinite() ? streamed_->p_W : to_W_;
+  from_W_ = to_W_ = streamed_->p_W.array().isFinite().select(streamed_->p_W, p_W);
   begin_s_ = now;
   duration_s_ = 0;
+  lands_ = false;
   trajectory_ = {};
   streamed_.reset();
 }

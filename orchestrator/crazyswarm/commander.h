@@ -34,7 +34,8 @@ class Commander {
   void Follow(const Trajectory& trajectory, double timescale, bool reversed, bool relative, const Eigen::Vector3d& p_W,
               double now);
   void Emergency();
-  void NotifySetpointsStop(double now);
+  /// It holds where it is, at `p_W`, until the next order.
+  void NotifySetpointsStop(const Eigen::Vector3d& p_W, double now);
   void Stream(const Setpoint& setpoint, double now);
 
   /// What to do at `now`; nothing: the motors stand.

@@ -146,7 +146,7 @@ void CrazyswarmServer::Offer(const std::string& name, const std::vector<Crazyfli
       service("arm"), ServiceType("Arm"), whom, [](const Bytes& sample) { return cs::ReadArm(sample); },
       [](Crazyflie& one, bool arm, double) { one.commander.Arm(arm); });
   Serve(service("notify_setpoints_stop"), ServiceType("NotifySetpointsStop"), whom, anything,
-        [](Crazyflie& one, bool, double now) { one.commander.NotifySetpointsStop(now); });
+        [](Crazyflie& one, bool, double now) { one.commander.NotifySetpointsStop(one.motion.p_WB, now); });
   Serve(
       service("upload_trajectory"), ServiceType("UploadTrajectory"), whom,
       [](const Bytes& sample) { return cs::ReadUpload(sample); },

@@ -77,10 +77,22 @@ TEST(Commander, AfterNotifySetpointsStopOrdersHold) {
   commander.Stream({place, Vector3d::Zero(), Vector3d::Zero()}, 10);
   commander.GoTo({0, 0, 1}, false, 1, place, 10.1);
   EXPECT_EQ(commander.At(10.3)->p_W, place) << "what is streamed comes first";
-  commander.NotifySetpointsStop(10.3);
+  commander.NotifySetpointsStop({5.1, 5, 1}, 10.3);
   EXPECT_EQ(commander.At(30)->p_W, place) << "it stays where it was";
   commander.Land(0.05, 1, place, 31);
   EXPECT_FALSE(commander.At(32));
+}
+
+TEST(Commander, AfterNotifySetpointsStopItStaysWhereItIsWhateverWasAskedBefore) {
+  const Vector3d free = Vector3d::Constant(std::nan("")), there(3, 0, 1);
+  Commander commander = Flying();
+  commander.Land(0.05, 1, {0, 0, 1}, 10);
+  commander.Stream({free, Vector3d(1, 0, 0), Vector3d::Zero()}, 10.5);  // before it is down; by velocity
+  commander.NotifySetpointsStop(there, 11);
+  for (const double now : {11.0, 12.0, 30.0}) {
+    ASSERT_TRUE(commander.At(now)) << "it does not land";
+    EXPECT_EQ(commander.At(now)->p_W, there);
+  }
 }
 
 TEST(Commander, OnceInAnEmergencyItDoesNotFlyAgain) {
