@@ -79,11 +79,14 @@ Answer RunRequests::Ask(const Request& request) {
 RunRequests::Order RunRequests::Checked(const Request& request, std::int64_t from) {
   const bool realtime = experiment_.run.mode == Mode::kRealtime;
   switch (request.kind) {
-    case Request::Kind::kPause:
     case Request::Kind::kResume:
     case Request::Kind::kStop:
       break;
+    case Request::Kind::kPause:
+      CheckPause("pause");
+      break;
     case Request::Kind::kStep:
+      CheckPause("step");
       if (!(request.number >= 1 && request.number <= kMaxSteps && request.number == std::floor(request.number)))
         throw std::invalid_argument(
             fmt::format("step: expected an integer in [1, {:.0f}], got {}", kMaxSteps, ShortestFloat(request.number)));
@@ -103,6 +106,12 @@ RunRequests::Order RunRequests::Checked(const Request& request, std::int64_t fro
       return CheckedEvent(request.toml, from);
   }
   return {.kind = request.kind, .number = request.number};
+}
+
+void RunRequests::CheckPause(const std::string& what) const {
+  if (!AgentsWithVehicles(experiment_).empty())
+    throw std::invalid_argument(
+        what + ": expected a run without vehicles, got one with [[vehicles]]: in a pause they would get no set-points");
 }
 
 void RunRequests::CheckVehicle(const Request& request) const {

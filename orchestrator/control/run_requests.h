@@ -94,6 +94,8 @@ class RunRequests final : public RunControl, public RowSink {
   /// What the request asks for. An event takes effect at tick `from` or later. Throws ConfigError or
   /// std::invalid_argument if it is not legal.
   Order Checked(const Request& request, std::int64_t from);
+  /// Throws std::invalid_argument if the run cannot pause.
+  void CheckPause(const std::string& what) const;
   /// Throws std::invalid_argument if a request to vehicles means none that there is.
   void CheckVehicle(const Request& request) const;
   /// Throws ConfigError if the event is not legal, or an event of the file after it. That holds for ticks before the

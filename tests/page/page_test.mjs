@@ -857,6 +857,7 @@ test("vehicles are shown with what happens to them, and are asked to take off an
     const {page, troubles} = await open(browser, fake.url, {size});
     await until(page, () => mascot.tick > 0);
     assert.ok(!await page.isVisible("#vehicles"), "no agent has one");
+    assert.ok(await page.isEnabled("#play"));
     fake.tellVehicles([
       {agent: 1, phase: "found", words: "found: PX4 1.18, at [0.00, 0.00, 0.00]"},
       {agent: 2, phase: "absent", words: "absent: its heading is unknown"}
@@ -865,6 +866,7 @@ test("vehicles are shown with what happens to them, and are asked to take off an
     assert.deepEqual(
         await rows(page),
         [["1", "found", "PX4 1.18, at [0.00, 0.00, 0.00]", ""], ["2", "absent", "its heading is unknown", ""]]);
+    for (const id of ["#play", "#step"]) assert.ok(await page.isDisabled(id), `vehicles cannot wait: ${id}`);
     assert.ok(!await page.isVisible('#vehicles button:text-is("Land all")'), "none flies");
     await page.click('#vehicles button:text-is("Take off")');
     fake.tellVehicles(

@@ -29,7 +29,7 @@ export class Transport {
     byId("seek").addEventListener("input", () => this.#onSeek(false));
     byId("seek").addEventListener("change", () => this.#onSeek(true));
     model.on("frame", () => this.#onFrame());
-    model.on("connection", () => this.#enable());
+    for (const kind of ["connection", "vehicles"]) model.on(kind, () => this.#enable());
     model.on("experiment", () => this.#onExperiment());
     model.on("events", () => this.#mark());
   }
@@ -115,10 +115,12 @@ export class Transport {
 
   // What cannot be asked for now is grey.
   #enable() {
-    const {connected, frame, isRecording, maySteer} = this.#model;
+    const {connected, frame, isRecording, maySteer, vehicles} = this.#model;
     const isOver = frame?.state === "done" || frame?.state === "failed";
     const canGoOn = connected && maySteer && (!isOver || isRecording);
     byId("play").disabled = byId("step").disabled = byId("pace").disabled = byId("seek").disabled = !canGoOn;
+    if (vehicles.length > 0 && !isRecording)
+      byId("play").disabled = byId("step").disabled = true;  // vehicles cannot wait
     byId("stop").disabled = !connected || !maySteer || isOver;
   }
 
