@@ -36,6 +36,16 @@ OnPath Along(std::initializer_list<Eigen::Vector3d> corners, double speed_m_per_
   return {*from, Eigen::Vector3d::Zero(), true};
 }
 
+/// Whether a place is in a fence, but for its bottom: a vehicle on the ground may be below that.
+bool IsBelowTheTop(const Eigen::AlignedBox3d& fence, const Eigen::Vector3d& p_W) {
+  return fence.contains(Eigen::Vector3d(p_W.x(), p_W.y(), std::max(p_W.z(), fence.min().z())));
+}
+
+/// How far a place is from the origin of a vehicle's frame, along the axis where it is farthest (m).
+double Farthest(const LocalFrame& frame, const Eigen::Vector3d& p_W) {
+  return frame.FromWorld({.p_WB = p_W}).p_WB.cwiseAbs().maxCoeff();
+}
+
 }  // namespace
 
 PilotRules PilotRulesOf(const Experiment& experiment, int agent) {
@@ -50,7 +60,8 @@ PilotRules PilotRulesOf(const Experiment& experiment, int agent) {
           .max_error_m = vehicle.max_error_m,
           .rate_hz = static_cast<double>(experiment.control.rate_hz),
           .frame = {.p_WL = vehicle.origin_W, .yaw_WL = vehicle.yaw_rad},
-          .arms_itself = vehicle.kind == VehicleKind::kCrazyswarm};
+          .arms_itself = vehicle.arms_itself,
+          .farthest_m = vehicle.farthest_m};
 }
 
 std::vector<std::string> WhyNotToStart(const PilotRules& rules, const VehicleReport& report,
@@ -66,7 +77,17 @@ std::vector<std::string> WhyNotToStart(const PilotRules& rules, const VehicleRep
     reasons.push_back(
         fmt::format("it is {:.2f} m from its start, and {:g} m are allowed: is its origin that of the file?",
                     from_start_m, Pilot::kMaxFromStart_m));
-  if (rules.fence && !rules.fence->contains(rules.start_W)) reasons.push_back("its start is beyond its fence");
+  if (std::abs(p_W.z()) > Pilot::kMaxFromStart_m)
+    reasons.push_back(
+        fmt::format("it stands at a height of {:.2f} m, and {:g} m are allowed: is its origin that of the file?",
+                    p_W.z(), Pilot::kMaxFromStart_m));
+  if (rules.start_W.z() - p_W.z() < Pilot::kLowestStart_m)
+    reasons.push_back(fmt::format("its start is {:.2f} m above where it stands, and at least {:g} m are wanted",
+                                  rules.start_W.z() - p_W.z(), Pilot::kLowestStart_m));
+  if (rules.fence && !rules.fence->contains(rules.start_W))
+    reasons.push_back("its start is beyond its fence");
+  else if (rules.fence && !IsBelowTheTop(*rules.fence, p_W + Eigen::Vector3d(0, 0, rules.takeoff_m)))
+    reasons.push_back("its way to its start (takeoff_m) leaves its fence");
   return reasons;
 }
 
@@ -74,17 +95,27 @@ Pilot::Pilot(const PilotRules& rules)
     : rules_(rules), frame_(rules.frame), reference_(rules.start_W, Eigen::Vector3d::Zero(), rules.rate_hz) {}
 
 void Pilot::Land(std::string why) {
-  if (!wants_land_) wants_land_ = std::move(why);
+  if (phase_ <= FlightPhase::kFound)
+    wants_start_ = false;
+  else if (!wants_land_)
+    wants_land_ = std::move(why);
 }
 
 void Pilot::StopMotors(std::string why) {
-  wants_stop_ = true;
-  words_.push_back("its motors are stopped: " + std::move(why));
+  if (!std::exchange(wants_stop_, true)) words_.push_back("its motors are to stop: " + std::move(why));
 }
 
 void Pilot::Command(std::int64_t tick, const Eigen::Vector3d& a_W, Time now) {
   Eigen::Vector3d a = a_W;
   if (rules_.holds_height) a.z() = 0;
+  if (commanded_at_ && now - *commanded_at_ > kMaxCommandAge && motion_W_) {
+    Eigen::Vector3d p_W = motion_W_->p_WB, v_W = motion_W_->v_WB;
+    if (rules_.holds_height) {
+      p_W.z() = reference_.p_W().z();
+      v_W.z() = 0;
+    }
+    reference_.Restart(tick, p_W, v_W);
+  }
   reference_.Take(tick, a);
   commanded_at_ = now;
 }
@@ -92,6 +123,10 @@ void Pilot::Command(std::int64_t tick, const Eigen::Vector3d& a_W, Time now) {
 void Pilot::Enter(FlightPhase phase, Time now, std::string words) {
   phase_ = phase;
   since_ = now;
+  if (phase == FlightPhase::kFound || phase == FlightPhase::kAbsent) {
+    wants_start_ = false;
+    wants_land_.reset();
+  }
   asked_at_.reset();
   asked_.reset();
   near_since_.reset();
@@ -100,8 +135,10 @@ void Pilot::Enter(FlightPhase phase, Time now, std::string words) {
 
 void Pilot::Measure(const VehicleReport& report) {
   if (!report.motion_L || (motion_W_ && report.measured_at == measured_at_)) return;
-  Motion motion = *report.motion_L;
-  if (motion_L_ && report.resets != resets_) {
+  const Motion motion = *report.motion_L;
+  if (phase_ < FlightPhase::kStreaming) {  // wherever it says that it is: it may have been carried, or switched on anew
+    frame_ = rules_.frame;
+  } else if (motion_L_ && report.resets != resets_) {
     const double dt_s = Seconds(report.measured_at - measured_at_);
     const Motion before = frame_.ToWorld(*motion_L_), after = frame_.ToWorld(motion);
     const Eigen::Vector3d jump_W = after.p_WB - (before.p_WB + before.v_WB * dt_s);
@@ -119,7 +156,9 @@ std::string Pilot::WhyLost(const VehicleReport& report, Time now) const {
     return fmt::format("nothing has been heard of where it is for {:.1f} s", Seconds(now - report.measured_at));
   if (now - report.status_at > kMaxStatusAge)
     return fmt::format("nothing has been heard of its status for {:.1f} s", Seconds(now - report.status_at));
-  if (phase_ == FlightPhase::kStreaming || phase_ == FlightPhase::kLanding) return "";
+  if (phase_ == FlightPhase::kStreaming) return "";
+  // An order to land takes a while, and then it follows no more; landing is what its own failsafe may do, too.
+  if (phase_ == FlightPhase::kLanding && (!has_obeyed_ || report.is_landing || !report.is_armed)) return "";
   if (!report.is_armed) return report.problem.empty() ? "it has disarmed itself" : report.problem;
   if (!report.follows)
     return "it follows no set-points any more: " +
@@ -134,24 +173,32 @@ std::string Pilot::WhyToLand(const VehicleReport& report) const {
     return fmt::format("its battery is at {:.0f} %", 100 * *report.battery);
   const Eigen::Vector3d& p_W = motion_W_->p_WB;
   const bool is_up = phase_ >= FlightPhase::kReady;
-  if (is_up && rules_.fence && !rules_.fence->contains(p_W)) return "it is beyond its fence, at " + PlaceText(p_W);
+  if (rules_.fence && !(is_up ? rules_.fence->contains(p_W) : IsBelowTheTop(*rules_.fence, p_W)))
+    return "it is beyond its fence, at " + PlaceText(p_W);
   if (phase_ == FlightPhase::kFlying) {
     const double error_m = (p_W - reference_.p_W()).norm();
-    if (rules_.setpoint == SetpointKind::kReference && error_m > rules_.max_error_m)
-      return fmt::format("it is {:.2f} m from its reference", error_m);
+    if (error_m > rules_.max_error_m) return fmt::format("it is {:.2f} m from its reference", error_m);
+    if (rules_.setpoint == SetpointKind::kReference && Farthest(frame_, reference_.p_W()) > rules_.farthest_m)
+      return fmt::format("its reference is beyond {:g} m, as far as it can be sent", rules_.farthest_m);
   }
   return "";
 }
 
 Pilot::Turn Pilot::Look(const VehicleReport& report, Time now) {
   Measure(report);
+  if (wants_stop_ && phase_ != FlightPhase::kAbsent) return StopNow(report, now);
   LookAtLife(report, now);
-  if (wants_stop_ && phase_ != FlightPhase::kAbsent) {
-    if (phase_ != FlightPhase::kLost && phase_ != FlightPhase::kLanded)
-      Enter(FlightPhase::kLost, now, "its motors are stopped");
-    return {.order = report.is_armed ? Repeated(VehicleOrder::kStopMotors, now) : std::nullopt};
-  }
   return Act(report, now);
+}
+
+Pilot::Turn Pilot::StopNow(const VehicleReport& report, Time now) {
+  if (!stops_since_) stops_since_ = now;
+  const bool was_up = phase_ != FlightPhase::kLost && phase_ != FlightPhase::kLanded;
+  if (was_up && !report.is_armed) Enter(FlightPhase::kLost, now, "its motors stand");
+  if (was_up && report.is_armed && now - *stops_since_ > kStopWithin)
+    Enter(FlightPhase::kLost, now, "its motors do not stop" + (report.refusal.empty() ? "" : ": " + report.refusal));
+  if (!report.is_armed) return {};
+  return {.order = Repeated(VehicleOrder::kStopMotors, now)};
 }
 
 void Pilot::LookAtLife(const VehicleReport& report, Time now) {
@@ -178,8 +225,7 @@ void Pilot::LookAtLife(const VehicleReport& report, Time now) {
 Pilot::Turn Pilot::Act(const VehicleReport& report, Time now) {
   switch (phase_) {
     case FlightPhase::kFound:
-      if (!wants_start_ || wants_land_) return {};
-      wants_start_ = false;
+      if (!std::exchange(wants_start_, false)) return {};
       if (const auto reasons = WhyNotToStart(rules_, report, motion_W_->p_WB); !reasons.empty()) {
         words_.push_back(fmt::format("it does not start: {}", fmt::join(reasons, "; ")));
         return {};
@@ -228,10 +274,7 @@ VehicleSetpoint Pilot::InFrame(const Eigen::Vector3d& p_W, const Eigen::Vector3d
 
 Pilot::Turn Pilot::Stream(const VehicleReport& report, Time now) {
   Turn turn{.setpoint = InFrame(rest_W_, Eigen::Vector3d::Zero(), kUncontrolled)};
-  if (wants_land_) {
-    Enter(FlightPhase::kFound, now, "it does not start: " + *wants_land_);
-    return {};
-  }
+  if (wants_land_) return LeaveStart(report, "it does not start: " + *wants_land_, now);
   if (report.follows && report.is_armed) {
     Enter(FlightPhase::kArmed, now, "");
     return turn;
@@ -241,11 +284,16 @@ Pilot::Turn Pilot::Stream(const VehicleReport& report, Time now) {
     const std::string what = report.follows ? "it does not arm" : "it does not follow set-points";
     const std::string why =
         report.refusal.empty() ? "it has not answered (is system_id right? does it hear us?)" : report.refusal;
-    Enter(FlightPhase::kFound, now, what + ": " + why);
-    return {};
+    return LeaveStart(report, what + ": " + why, now);
   }
   turn.order = Repeated(report.follows ? VehicleOrder::kArm : VehicleOrder::kFollow, now);
   return turn;
+}
+
+Pilot::Turn Pilot::LeaveStart(const VehicleReport& report, const std::string& why, Time now) {
+  const bool was_armed = report.is_armed && !rules_.arms_itself;
+  Enter(was_armed ? FlightPhase::kLanding : FlightPhase::kFound, now, why);
+  return {};
 }
 
 Pilot::Turn Pilot::TakeOff(Time now) {
@@ -289,6 +337,7 @@ Pilot::Turn Pilot::LandNow(const VehicleReport& report, Time now) {
     Enter(FlightPhase::kLanded, now, "");
     return {};
   }
+  has_obeyed_ = has_obeyed_ || report.follows || report.is_landing;
   if (report.is_landing) return {};
   // Until it has taken the order it stands where it has come to a stop: an autopilot that gets nothing has another idea
   // of landing.

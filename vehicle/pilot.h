@@ -27,6 +27,7 @@ struct PilotRules {
   double rate_hz = 100;                               ///< of the agent
   LocalFrame frame = {};                              ///< of the vehicle
   bool arms_itself = false;                           ///< as soon as it is switched on
+  double farthest_m = 1e6;                            ///< as far it can be sent along an axis of its frame
 };
 
 /// What a pilot has to know of an agent with a vehicle.
@@ -49,20 +50,25 @@ class Pilot {
   static constexpr std::chrono::milliseconds kMaxAge{1000};        ///< of a vehicle's motion: older ones are a loss
   static constexpr std::chrono::milliseconds kMaxStatusAge{3000};  ///< likewise, of its status
   static constexpr std::chrono::milliseconds kMaxCommandAge{500};  ///< of an agent's command: then nothing is sent
-  static constexpr std::chrono::milliseconds kSettle{1000};        ///< at the start, before it is ready
+  static constexpr std::chrono::milliseconds kStopWithin{3000};  ///< motors, else the vehicle is lost, and still asked
+  static constexpr std::chrono::milliseconds kSettle{1000};      ///< at the start, before it is ready
   static constexpr double kNear_m = 0.2;
   static constexpr double kTransferSpeed_m_per_s = 0.5;
   static constexpr double kBraking_m_per_s2 = 1;                         ///< before it lands
   static constexpr double kBatteryToStart = 0.3, kBatteryToLand = 0.15;  // share that is left
-  static constexpr double kMaxFromStart_m = 0.5;                         ///< before it takes off, in the plane
+  static constexpr double kMaxFromStart_m = 0.5;  ///< before it takes off, in the plane; and from the ground
+  static constexpr double kLowestStart_m = 0.3;   ///< above where it stands
 
   explicit Pilot(const PilotRules& rules);
 
   // What people and the run want; each holds from the next Look() on.
-  void Start() { wants_start_ = true; }
+  /// Only of a vehicle that is found.
+  void Start() { wants_start_ = phase_ == FlightPhase::kFound; }
+  /// One that has not begun to start does not.
   void Land(std::string why);
   void StopMotors(std::string why);
-  /// The agent's acceleration for a tick; the first one makes a vehicle that is ready fly.
+  /// The agent's acceleration for a tick; the first one makes a vehicle that is ready fly. After a silence of more than
+  /// kMaxCommandAge the reference begins anew, where the vehicle is.
   void Command(std::int64_t tick, const Eigen::Vector3d& a_W, Time now);
 
   /// What is to be sent now.
@@ -74,7 +80,8 @@ class Pilot {
   Turn Look(const VehicleReport& report, Time now);
 
   FlightPhase phase() const { return phase_; }
-  /// The vehicle's motion in W, after the first report that has one; a jump of its estimator is taken out.
+  /// The vehicle's motion in W, after the first report that has one; a jump of its estimator is taken out, from when
+  /// set-points are streamed on.
   const std::optional<Motion>& motion_W() const { return motion_W_; }
   const Reference& reference() const { return reference_; }
   /// What has happened since the last call, in words for people.
@@ -87,6 +94,9 @@ class Pilot {
   std::string WhyLost(const VehicleReport& report, Time now) const;
   std::string WhyToLand(const VehicleReport& report) const;
   Turn Stream(const VehicleReport& report, Time now);
+  /// It does not start: back to where nothing is sent, by landing if it is armed already.
+  Turn LeaveStart(const VehicleReport& report, const std::string& why, Time now);
+  Turn StopNow(const VehicleReport& report, Time now);
   Turn TakeOff(Time now);
   Turn Fly(Time now);
   Turn LandNow(const VehicleReport& report, Time now);
@@ -105,6 +115,8 @@ class Pilot {
   std::optional<Motion> motion_L_ = {}, motion_W_ = {};
   Time measured_at_ = {};
   bool wants_start_ = false, wants_stop_ = false;
+  std::optional<Time> stops_since_;  // since when its motors are to stop
+  bool has_obeyed_ = false;          // while it lands: it has followed set-points, or landed itself
   std::optional<std::string> wants_land_ = {};
   std::string problem_;  // the newest that was told of a vehicle that is absent
   struct Stop {

@@ -17,6 +17,12 @@ class Reference {
   /// ones are too late, and are not taken.
   void Take(std::int64_t tick, const Eigen::Vector3d& a_W);
 
+  /// Begins anew at `tick`, at `p_W` with `v_W`.
+  void Restart(std::int64_t tick, const Eigen::Vector3d& p_W, const Eigen::Vector3d& v_W) {
+    *this = Reference(p_W, v_W, rate_hz_);
+    tick_ = tick;
+  }
+
   std::int64_t tick() const { return tick_; }
   // At tick(), in W (m, m/s, m/s^2).
   const Eigen::Vector3d& p_W() const { return p_W_; }

@@ -1,6 +1,7 @@
 // What is told of vehicles whose samples make no sense: on DDS, as they send them.
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -50,6 +51,8 @@ class Autopilots : public ::testing::Test {
   const DomainLock lock_{-1};
   OutsideDomain vehicle_{{.domain = lock_.domain(), .name = "vehicle", .address = "127.0.0.1"}};
   std::set<std::string> announced_;
+
+ protected:
   std::unique_ptr<Autopilot> autopilot_;
 };
 
@@ -96,6 +99,28 @@ TEST_F(Autopilots, OfACrazyflieThatMakesNoSenseAreToldWhat) {
   EXPECT_NEAR(*volts(3.6F).battery, 0.5, 1e-6);
   volts(kNan);
   ExpectProblem(status, Sample().Header("").Add(std::uint16_t{32}).Add(3.6F), "it has tumbled");  // first of all
+}
+
+TEST_F(Autopilots, ACrazyflieStandsWhereSetpointsBeginNotWhereItWasFirstHeardOf) {
+  const Topic pose{"rt/cf1/pose", "geometry_msgs::msg::dds_::PoseStamped_"};
+  Listen(VehicleKind::kCrazyswarm, "cf1");
+  const auto is_at = [&](double z_m) {
+    Send(pose, Sample().Header("map").Doubles({0, 0, z_m, 0, 0, 0, 1}),
+         [&](const VehicleReport& report) { return report.motion_L && report.motion_L->p_WB.z() == z_m; });
+  };
+  const VehicleSetpoint still{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0};
+  is_at(0.9);  // in a hand
+  is_at(0.05);
+  autopilot_->Stream(still);
+  is_at(0.06);
+  const auto lies_for = [&](std::chrono::milliseconds time, double z_m) {
+    const auto end = std::chrono::steady_clock::now() + time;
+    Send(pose, Sample().Header("map").Doubles({0, 0, z_m, 0, 0, 0, 1}),
+         [&](const VehicleReport&) { return std::chrono::steady_clock::now() > end; });
+    return autopilot_->Report().is_on_ground;
+  };
+  EXPECT_TRUE(lies_for(std::chrono::milliseconds(800), 0.06));
+  EXPECT_FALSE(lies_for(std::chrono::milliseconds(800), 0.8)) << "lower than the hand, but in the air";
 }
 
 TEST_F(Autopilots, OfAnArdupilotThatMakesNoSenseAreToldWhat) {

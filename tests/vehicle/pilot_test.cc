@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -12,6 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 using Time = Pilot::Time;
 
 constexpr auto kStep = 20ms;
@@ -25,6 +27,17 @@ class PilotTest : public testing::Test {
     rules_.frame.p_WL = {1, 2, 0};
   }
 
+  /// Another vehicle on the ground, and another pilot.
+  void SetUpAnew() {
+    pilot_.reset();
+    motion_L_ = Motion{};
+    report_ = VehicleReport{.release = "PX4 1.15", .motion_L = Motion{}};
+    a_W_.setZero();
+    words_.clear();
+    agent_flies_ = false;
+    tracks_ = true;
+    tick_ = 0;
+  }
   Pilot& pilot() {
     if (!pilot_) pilot_.emplace(rules_);
     return *pilot_;
@@ -52,7 +65,7 @@ class PilotTest : public testing::Test {
       EXPECT_TRUE(report_.follows);
       report_.is_armed = true;
     }
-    if (turn.order == VehicleOrder::kStopMotors) report_.is_armed = false;
+    if (turn.order == VehicleOrder::kStopMotors && stops_motors_) report_.is_armed = false;
     if (turn.order == VehicleOrder::kLand && obeys_) {
       report_.is_landing = true;
       report_.follows = false;
@@ -84,7 +97,7 @@ class PilotTest : public testing::Test {
   VehicleReport report_;
   Motion motion_L_;
   Eigen::Vector3d offset_L_ = Eigen::Vector3d::Zero(), a_W_ = Eigen::Vector3d::Zero();
-  bool is_heard_ = true, obeys_ = true, tracks_ = true, agent_flies_ = false;
+  bool is_heard_ = true, obeys_ = true, tracks_ = true, agent_flies_ = false, stops_motors_ = true;
   std::int64_t tick_ = 0;
   std::optional<VehicleSetpoint> setpoint_;
   Time now_ = Time(1h), last_setpoint_ = now_;
@@ -224,13 +237,17 @@ TEST_F(PilotTest, ThatMoreThanItsPlaceIsMissingIsTold) {
   EXPECT_EQ(pilot().phase(), FlightPhase::kAbsent);
 }
 
-TEST_F(PilotTest, LandsFarFromItsReference) {
-  ASSERT_TRUE(UntilFlying());
-  For(1s);
-  tracks_ = false;
-  a_W_ = {0, 1, 0};
-  ASSERT_TRUE(Until(FlightPhase::kLanding));
-  EXPECT_THAT(words_, Contains(HasSubstr("m from its reference")));
+TEST_F(PilotTest, LandsFarFromItsReferenceWhateverItIsSent) {
+  for (const SetpointKind kind : {SetpointKind::kReference, SetpointKind::kAcceleration, SetpointKind::kVelocity}) {
+    SetUpAnew();
+    rules_.setpoint = kind;
+    ASSERT_TRUE(UntilFlying());
+    For(1s);
+    tracks_ = false;
+    a_W_ = {0, 1, 0};
+    ASSERT_TRUE(Until(FlightPhase::kLanding));
+    EXPECT_THAT(words_, Contains(HasSubstr("m from its reference")));
+  }
 }
 
 TEST_F(PilotTest, LandsWithALowBattery) {
@@ -305,7 +322,160 @@ TEST_F(PilotTest, StopsMotorsAtOnce) {
   Step();
   EXPECT_EQ(orders_.back(), VehicleOrder::kStopMotors);
   EXPECT_FALSE(report_.is_armed);
-  EXPECT_THAT(words_, Contains("its motors are stopped: send kill"));
+  EXPECT_FALSE(setpoint_);
+  For(1s);
+  EXPECT_THAT(words_, Contains("its motors are to stop: send kill"));
+  EXPECT_EQ(words_.back(), "lost: its motors stand");
+}
+
+TEST_F(PilotTest, MotorsThatDoNotStopAreToldAndAskedAgain) {
+  ASSERT_TRUE(UntilFlying());
+  stops_motors_ = false;
+  for (int k = 0; k < 5; ++k) pilot().StopMotors("send kill");
+  For(1s);
+  EXPECT_EQ(words_.back(), "its motors are to stop: send kill") << "once";
+  report_.refusal = "disarming is denied";
+  For(3s);
+  EXPECT_EQ(words_.back(), "lost: its motors do not stop: disarming is denied");
+  const auto orders = orders_.size();
+  For(2s);
+  EXPECT_GE(orders_.size(), orders + 3) << "it is asked again and again";
+  EXPECT_EQ(orders_.back(), VehicleOrder::kStopMotors);
+}
+
+TEST_F(PilotTest, ALandingIsLeftToAPilotWhoTakesOver) {
+  ASSERT_TRUE(UntilFlying());
+  pilot().Land("the run is over");
+  For(500ms);
+  ASSERT_EQ(pilot().phase(), FlightPhase::kLanding);
+  report_.is_landing = report_.follows = false;
+  const auto orders = orders_.size();
+  Step();
+  EXPECT_EQ(pilot().phase(), FlightPhase::kLost);
+  EXPECT_EQ(words_.back(), "lost: it follows no set-points any more: a pilot or its own failsafe has taken over");
+  For(5s);
+  EXPECT_EQ(orders_.size(), orders) << "nobody fights the pilot";
+  EXPECT_FALSE(setpoint_);
+}
+
+TEST_F(PilotTest, ALandingOfItsOwnFailsafeIsALanding) {
+  ASSERT_TRUE(UntilFlying());
+  pilot().Land("the run is over");
+  For(500ms);
+  report_.is_landing = true;
+  report_.follows = false;
+  ASSERT_TRUE(Until(FlightPhase::kLanded));
+}
+
+TEST_F(PilotTest, AJumpOfTheEstimatorOnTheGroundIsBelieved) {
+  offset_L_ = {4, 0, 0};  // it does not know yet where it is
+  For(100ms);
+  offset_L_.setZero();
+  ++report_.resets;
+  For(100ms);
+  EXPECT_EQ(words_.size(), 1U) << "found";
+  EXPECT_TRUE(pilot().motion_W()->p_WB.isApprox(Eigen::Vector3d(1, 2, 0), 1e-9));
+  offset_L_ = {0, 4, 0};  // it was carried away, switched off and on
+  ++report_.resets;
+  Step();
+  pilot().Start();
+  For(3s);
+  EXPECT_THAT(words_.back(), HasSubstr("it does not start: it is 4.00 m from its start"));
+}
+
+TEST_F(PilotTest, AHeightThatCannotBeIsNotStartedFrom) {
+  struct Row {
+    double z_m, start_m;
+    std::string words;
+  };
+  for (const Row& row : {Row{0.9, 1.5, "it stands at a height of 0.90 m, and 0.5 m are allowed"},
+                         Row{-0.9, 1.5, "it stands at a height of -0.90 m, and 0.5 m are allowed"},
+                         Row{0.4, 0.5, "its start is 0.10 m above where it stands, and at least 0.3 m are wanted"}}) {
+    pilot_.reset();
+    rules_.start_W.z() = row.start_m;
+    motion_L_.p_WB.z() = row.z_m;
+    Step();
+    pilot().Start();
+    For(3s);
+    EXPECT_THAT(words_.back(), HasSubstr("it does not start: " + row.words));
+    EXPECT_EQ(pilot().phase(), FlightPhase::kFound);
+  }
+}
+
+TEST_F(PilotTest, AWayThatLeavesTheFenceIsNotBegun) {
+  rules_.fence = Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0.2), Eigen::Vector3d(2, 3, 1.6));
+  rules_.takeoff_m = 2;
+  Step();
+  pilot().Start();
+  For(3s);
+  EXPECT_EQ(words_.back(), "it does not start: its way to its start (takeoff_m) leaves its fence");
+  pilot_.reset();
+  rules_.takeoff_m = 1;
+  EXPECT_TRUE(UntilFlying()) << "it stands below its bottom";
+}
+
+TEST_F(PilotTest, LandsBeyondItsFenceBeforeItIsReady) {
+  rules_.fence = Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0.2), Eigen::Vector3d(2, 3, 1.6));
+  Step();
+  pilot().Start();
+  ASSERT_TRUE(Until(FlightPhase::kTakingOff));
+  tracks_ = false;
+  motion_L_.p_WB.x() += 5;
+  ASSERT_TRUE(Until(FlightPhase::kLanding));
+  EXPECT_THAT(words_, Contains(HasSubstr("landing: it is beyond its fence, at [6.0")));
+}
+
+TEST_F(PilotTest, LandsWhereItCannotBeSentAnyFarther) {
+  rules_.farthest_m = 3;
+  a_W_ = {0.5, 0, 0};
+  ASSERT_TRUE(UntilFlying());
+  ASSERT_TRUE(Until(FlightPhase::kLanded));
+  EXPECT_THAT(words_, Contains("landing: its reference is beyond 3 m, as far as it can be sent"));
+}
+
+TEST_F(PilotTest, OneThatIsToLandBeforeItHasTakenOffIsDisarmedAndOneThatStartsNotMayStartAgain) {
+  Step();
+  pilot().Start();
+  ASSERT_TRUE(Until(FlightPhase::kStreaming));
+  pilot().Land("asked to land");
+  Step();
+  EXPECT_EQ(words_.back(), "found: it does not start: asked to land");
+  pilot().Land("asked once more");
+  pilot().Start();
+  ASSERT_TRUE(Until(FlightPhase::kStreaming)) << "nothing of that is left";
+  report_.is_armed = true;
+  pilot().Land("asked to land");
+  Step();
+  EXPECT_EQ(words_.back(), "landing: it does not start: asked to land");
+  ASSERT_TRUE(Until(FlightPhase::kLanded));
+  EXPECT_FALSE(report_.is_armed);
+}
+
+TEST_F(PilotTest, AStartThatCameTooEarlyIsForgotten) {
+  is_heard_ = false;
+  pilot().Start();
+  For(1s);
+  is_heard_ = true;
+  For(5s);
+  EXPECT_EQ(pilot().phase(), FlightPhase::kFound);
+  EXPECT_TRUE(orders_.empty());
+}
+
+TEST_F(PilotTest, AfterASilenceOfItsAgentTheReferenceBeginsWhereTheVehicleIs) {
+  a_W_ = {0.5, 0, 0};
+  ASSERT_TRUE(UntilFlying());
+  For(2s);
+  agent_flies_ = false;
+  For(900ms);
+  motion_L_.p_WB += Eigen::Vector3d(0, 0.3, 0);
+  Step();
+  tick_ += 46;
+  agent_flies_ = true;
+  const Eigen::Vector3d there_W = rules_.frame.p_WL + motion_L_.p_WB;
+  Step();
+  ASSERT_TRUE(setpoint_);
+  EXPECT_TRUE(pilot().reference().p_W().isApprox(there_W, 1e-9));
+  EXPECT_TRUE(pilot().reference().v_W().isZero(1e-9)) << "that of the vehicle";
 }
 
 TEST_F(PilotTest, SetpointsAreOfTheKindAskedFor) {
@@ -317,11 +487,7 @@ TEST_F(PilotTest, SetpointsAreOfTheKindAskedFor) {
                          Row{SetpointKind::kAcceleration, false, false, false, false, true},
                          Row{SetpointKind::kAcceleration, true, false, true, false, true},
                          Row{SetpointKind::kVelocity, true, false, true, true, false}}) {
-    pilot_.reset();
-    motion_L_ = Motion{};
-    report_ = VehicleReport{.release = "PX4 1.15", .motion_L = Motion{}};
-    agent_flies_ = false;
-    tick_ = 0;
+    SetUpAnew();
     rules_.setpoint = row.kind;
     rules_.holds_height = row.holds_height;
     rules_.frame.yaw_WL = 0.3;

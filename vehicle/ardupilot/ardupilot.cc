@@ -84,7 +84,7 @@ class Ardupilot final : public Autopilot {
       const Eigen::Vector3d& p = report_.motion_L->p_WB;
       if (!report_.is_armed) rest_z_ = p.z();
       const double up_z = rest_z_ + vehicle_.takeoff_m;
-      is_up_ = report_.is_armed && (is_up_ || p.z() > up_z - kUp_m);
+      is_up_ = report_.is_armed && (is_up_ || p.z() > up_z - std::min(kUp_m, vehicle_.takeoff_m / 2));
       // On the ground it takes no velocities: it has to be asked to take off.
       const bool is_to_climb = setpoint.p_L.z() > rest_z_;
       if (report_.is_armed && !is_up_) {
@@ -100,6 +100,10 @@ class Ardupilot final : public Autopilot {
   }
 
   void Ask(VehicleOrder order) override {
+    {
+      const std::lock_guard lock(mutex_);
+      disarms_ = order == VehicleOrder::kStopMotors;
+    }
     switch (order) {
       case VehicleOrder::kFollow:
         return domain_.Write(Request("mode_switch"), ModeSwitchRequest(Status::kGuided));
@@ -125,7 +129,7 @@ class Ardupilot final : public Autopilot {
                  [this, refusal = std::move(refusal)](const Bytes& sample) {
                    const auto done = ReadReply(sample);
                    const std::lock_guard lock(mutex_);
-                   if (done) report_.refusal = *done ? "" : refusal;
+                   if (done) report_.refusal = *done ? "" : disarms_ ? "disarming is refused" : refusal;
                  });
   }
   void Read(std::string_view name, const std::string& type, std::function<void(const Bytes&)> on_sample) {
@@ -206,6 +210,7 @@ class Ardupilot final : public Autopilot {
   TopicProblems problems_{{kStatus, kPose, kTwist, kBattery}};
   Motion heard_;           // good or not
   bool is_known_ = false;  // its status has been heard
+  bool disarms_ = false;   // it was asked to last
   double rest_z_ = 0;      // where it stood before it was armed
   bool is_up_ = false;     // it has taken off since it was armed
   Clock::time_point ask_to_take_off_at_ = {};

@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 constexpr double kEmpty_V = 3.0, kFull_V = 4.2;
 /// How fast set-points sink at landing, how far below where the vehicle stood, and how near to that it is down.
 constexpr double kSink_m_per_s = 0.3, kBelow_m = 0.05, kDown_m = 0.06;
-constexpr auto kDownFor = 500ms;
+constexpr auto kDownFor = 500ms, kSetpointsBeginAfter = 1000ms;
 constexpr double kSmoothing_s = 0.05;  // time constant of velocities
 constexpr std::string_view kStatus = "status", kPoses = "poses", kPose = "pose";
 constexpr auto kFreshPoses = 500ms;  // then those of `poses` are preferred to `pose`
@@ -63,6 +63,11 @@ class Crazyswarm final : public Autopilot {
     VehicleSetpoint now = setpoint;
     {
       const std::lock_guard lock(mutex_);
+      // Set-points begin on the ground. In the air they may have been missing for a while, too.
+      const auto time = Clock::now();
+      if (!is_flying_ && time - streamed_at_ > kSetpointsBeginAfter && report_.motion_L)
+        rest_z_ = report_.motion_L->p_WB.z();
+      streamed_at_ = time;
       if (is_landing_) Sink(now);
     }
     const auto known = [](const Eigen::Vector3d& vector) {
@@ -127,6 +132,7 @@ class Crazyswarm final : public Autopilot {
       report_.release = "Crazyswarm2";
       report_.status_at = Clock::now();
       report_.is_armed = status->Is(Status::kIsArmed) && status->Is(Status::kCanFly);
+      is_flying_ = status->Is(Status::kIsFlying);
       report_.battery.reset();
       if (std::isfinite(status->battery_V))
         report_.battery = std::clamp((status->battery_V - kEmpty_V) / (kFull_V - kEmpty_V), 0.0, 1.0);
@@ -157,8 +163,6 @@ class Crazyswarm final : public Autopilot {
       motion.v_WB = report_.motion_L->v_WB + share * (newest - report_.motion_L->v_WB);
       const Eigen::AngleAxisd turned(report_.motion_L->q_WB.conjugate() * motion.q_WB);
       motion.w_WB_B = turned.axis() * std::remainder(turned.angle(), 2 * M_PI) / dt_s;
-    } else {
-      rest_z_ = motion.p_WB.z();
     }
     report_.motion_L = motion;
     report_.measured_at = now;
@@ -184,7 +188,9 @@ class Crazyswarm final : public Autopilot {
   VehicleReport report_;  // its `problem` is in problems_
   TopicProblems problems_{{kStatus, kPoses, kPose}};
   Clock::time_point poses_at_ = {}, landing_since_ = {};
-  double rest_z_ = 0;  // where it stood when it was first heard of
+  double rest_z_ = 0;       // where it stood when set-points began
+  bool is_flying_ = false;  // as it says, once a second
+  Clock::time_point streamed_at_ = {};
   std::optional<Clock::time_point> low_since_;
   bool is_landing_ = false;
   std::optional<Eigen::Vector3d> sinks_from_;

@@ -47,8 +47,7 @@ std::optional<Pose> ReadPose(std::span<const std::uint8_t> sample);
 std::optional<std::vector<Pose>> ReadPoses(std::span<const std::uint8_t> sample);
 std::optional<Status> ReadStatus(std::span<const std::uint8_t> sample);
 
-/// FullState. It travels to the Crazyflie as int16 of mm, mm/s and mm/s^2: kLargest is what fits.
-inline constexpr double kLargest = 32.767;
+/// FullState. It travels to the Crazyflie as int16 of mm, mm/s and mm/s^2 (VehicleConfig::farthest_m).
 Bytes FullState(const Eigen::Vector3d& p, const Eigen::Vector3d& v, const Eigen::Vector3d& a, double yaw_rad);
 Bytes VelocityWorld(const Eigen::Vector3d& v);
 /// The request of the service `arm`.

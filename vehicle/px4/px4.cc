@@ -39,7 +39,8 @@ Motion MotionOf(const Odometry& odometry) {
           .w_WB_B = SwapBodyAxes(odometry.w_F)};
 }
 
-std::string RefusalOf(const Ack& ack) {
+/// `disarms`: it was asked to disarm, not to arm.
+std::string RefusalOf(const Ack& ack, bool disarms) {
   if (ack.result == Ack::kAccepted) return "";
   const bool is_temporary = ack.result == Ack::kTemporarilyRejected;
   const std::string how = is_temporary                 ? "is rejected for now"
@@ -47,6 +48,7 @@ std::string RefusalOf(const Ack& ack) {
                                                        : fmt::format("has the result {}", ack.result);
   switch (static_cast<Order>(ack.command)) {
     case Order::kArmOrDisarm:
+      if (disarms) return "disarming " + how;
       return "arming " + how +
              ": its ground station says why (without a ground station and a remote control it does not arm, unless "
              "COM_RC_IN_MODE, COM_RCL_EXCEPT and NAV_DLL_ACT allow it)";
@@ -95,6 +97,10 @@ class Px4 final : public Autopilot {
   }
 
   void Ask(VehicleOrder order) override {
+    {
+      const std::lock_guard lock(mutex_);
+      disarms_ = order == VehicleOrder::kStopMotors;
+    }
     Command command{.target_system = static_cast<std::uint8_t>(vehicle_.system_id)};
     switch (order) {
       case VehicleOrder::kFollow:
@@ -174,7 +180,7 @@ class Px4 final : public Autopilot {
     const auto ack = ReadAck(topic, sample, unknown);
     const std::lock_guard lock(mutex_);
     problems_.Set(kAck, unknown.words);
-    if (ack) report_.refusal = RefusalOf(*ack);
+    if (ack) report_.refusal = RefusalOf(*ack, disarms_);
   }
   /// Whether a newer sample has come before; a clock that goes back by seconds is that of a vehicle that has begun
   /// anew.
@@ -193,6 +199,7 @@ class Px4 final : public Autopilot {
   Release release_ = Release::k1_15;
   std::optional<std::uint8_t> resets_heard_;
   std::uint64_t newest_us_ = 0;
+  bool disarms_ = false;
 
   OutsideDomain domain_;  // last, so destroyed first: its readers call the members above
 };
