@@ -244,9 +244,9 @@ TEST_F(Vehicles, MotorsStopWhenSomebodyMeansIt) {
   EXPECT_FALSE(px4.Said("disarmed"));
   const Ran meant = Shell("printf 'yes\\n' | script -qec \"" + kill + "\" /dev/null");
   EXPECT_EQ(meant.exit_code, 0) << meant.output;
-  EXPECT_THAT(meant.output, HasSubstr("the motors of vehicle 1 stop"));
+  EXPECT_THAT(meant.output, HasSubstr("the motors of vehicle 1 are to stop"));
   EXPECT_TRUE(Until([&] { return px4.Said("disarmed"); })) << px4.err();
-  EXPECT_TRUE(Until([&] { return up.Said("vehicle 1: lost: its motors are stopped"); })) << up.err();
+  EXPECT_TRUE(Until([&] { return up.Said("vehicle 1: lost: its motors stand"); })) << up.err();
   up.Signal(SIGINT);
   EXPECT_EQ(up.Wait(), 130) << up.err();
 }
@@ -256,9 +256,14 @@ TEST_F(Vehicles, AreNotAwaitedByARunThatIsStopped) {
   Up up = Fly(Team("[1]", kPx4, kEndless), {});
   ASSERT_TRUE(Until([&] { return up.Said("all vehicles are there"); })) << up.err();
   const std::string send = "send --run '" + up.path().string() + "' ";
-  const Ran paused = Orchestrator(send + "pause");
-  EXPECT_EQ(paused.exit_code, 1);
-  EXPECT_THAT(paused.output, HasSubstr("the run has not begun: vehicle 1 is found"));
+  const Ran resumed = Orchestrator(send + "resume");
+  EXPECT_EQ(resumed.exit_code, 1);
+  EXPECT_THAT(resumed.output, HasSubstr("the run has not begun: vehicle 1 is found"));
+  for (const std::string_view what : {"pause", "step"})
+    EXPECT_THAT(Orchestrator(send + std::string(what)).output,
+                HasSubstr(fmt::format("{}: expected a run without vehicles, got one with [[vehicles]]: in a pause they "
+                                      "would get no set-points",
+                                      what)));
   EXPECT_THAT(Orchestrator(send + "land").output, HasSubstr("land: expected a vehicle in the air, got none"));
   EXPECT_THAT(Orchestrator(send + "land 3").output, HasSubstr("land: expected an agent with a vehicle (1), got 3"));
   EXPECT_THAT(Orchestrator("ps").output, HasSubstr("1 found"));
@@ -286,6 +291,32 @@ TEST_F(Vehicles, CtrlCLandsThem) {
   up.Signal(SIGINT);
   EXPECT_EQ(up.Wait(), 130) << up.err();
   EXPECT_THAT(up.err(), AllOf(HasSubstr("vehicle 1: landing"), HasSubstr("vehicle 1: landed")));
+}
+
+TEST_F(Vehicles, MotorsThatDoNotStopInTheAirAreTold) {
+  airfield_.AddArdupilot(1, "0,0,0");
+  Up up = Fly(Team("[1]", "kind = 'ardupilot'\n", kEndless));
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: flying"); })) << up.err();
+  const Ran asked = Orchestrator("send --run '" + up.path().string() + "' kill 1");
+  EXPECT_EQ(asked.exit_code, 0) << asked.output;
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: lost: its motors do not stop: disarming is refused"); }))
+      << up.err();
+  up.Signal(SIGINT);
+  EXPECT_EQ(up.Wait(), 130) << up.err();
+}
+
+TEST_F(Vehicles, MotorsStopWhileAllLand) {
+  airfield_.AddPx4(1, "0,0,0");
+  Up up = Fly(Team("[1]", kPx4, kEndless));
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: flying"); })) << up.err();
+  up.Signal(SIGINT);
+  ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: landing"); })) << up.err();
+  const std::string send = "send --run '" + up.path().string() + "' ";
+  EXPECT_THAT(Orchestrator(send + "start").output, HasSubstr("the run is over"));
+  const Ran killed = Orchestrator(send + "kill 1");
+  EXPECT_EQ(killed.exit_code, 0) << killed.output;
+  EXPECT_EQ(up.Wait(), 130) << up.err();
+  EXPECT_THAT(up.err(), AllOf(HasSubstr("vehicle 1: lost: its motors stand"), Not(HasSubstr("vehicle 1: landed"))));
 }
 
 TEST_F(Vehicles, LoseTheirHeartbeatWithTheOrchestrator) {

@@ -449,8 +449,12 @@ EngineResult DdsRun::Fly() {
   } catch (const std::exception& failure) {
     phases_.Fail(InWords(failure));
   }
+  try {
+    BringDown();
+  } catch (const std::exception& failure) {
+    phases_.Fail(InWords(failure));
+  }
   if (run_requests_ != nullptr) run_requests_->Close();
-  BringDown();
   if (recorder_) Collect();
   result_.failure = phases_.failure();
   result_.signal = phases_.signal();
@@ -471,7 +475,7 @@ void DdsRun::Loop() {
     const RunPhases::View view = Record();
     Do(phases_.Look(view, WallClock::now()));
     if (run_requests_ != nullptr && phases_.phase() == RunPhases::Phase::kFlying) Steer();
-    if (run_requests_ != nullptr && phases_.phase() == RunPhases::Phase::kStarting && !fleet_.empty()) SteerFleet();
+    if (run_requests_ != nullptr && phases_.phase() != RunPhases::Phase::kFlying && !fleet_.empty()) SteerFleet();
   }
 }
 
@@ -537,6 +541,9 @@ void DdsRun::SteerFleet() {
   const auto order = run_requests_->Next();
   if (!order) return;
   const int agent = static_cast<int>(order->number);
+  const bool is_for_the_landing = order->kind == Request::Kind::kLand || order->kind == Request::Kind::kKill;
+  if (phases_.phase() > RunPhases::Phase::kFlying && !is_for_the_landing)
+    return run_requests_->Refuse("the run is over");
   try {
     switch (order->kind) {
       case Request::Kind::kStart:
@@ -585,6 +592,7 @@ void DdsRun::BringDown() {
     Reap();
     TellLosses();
     LookAtFleet();
+    if (run_requests_ != nullptr) SteerFleet();
   }
   if (WallClock::now() >= begin + kLongest)
     console_.Line(

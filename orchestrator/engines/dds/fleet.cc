@@ -95,10 +95,16 @@ std::string Fleet::Land(int agent, const std::string& reason) {
 }
 
 std::string Fleet::StopMotors(int agent, const std::string& reason) {
-  if (!vehicles_.contains(agent)) throw std::invalid_argument(fmt::format("kill: agent {} has no vehicle", agent));
+  const auto found = vehicles_.find(agent);
+  if (found == vehicles_.end()) throw std::invalid_argument(fmt::format("kill: agent {} has no vehicle", agent));
+  if (!found->second.has_process)
+    throw std::invalid_argument(
+        fmt::format("kill: the process of vehicle {} has ended: nobody is there who could stop its motors", agent));
+  if (found->second.state.phase == FlightPhase::kAbsent)
+    throw std::invalid_argument(fmt::format("kill: nothing is heard of vehicle {}", agent));
   const std::vector<std::uint32_t> ids{static_cast<std::uint32_t>(agent)};
   new_orders_.push_back({Ask::kStopMotors, ids, reason});
-  return fmt::format("the motors of vehicle {} stop", agent);
+  return fmt::format("the motors of vehicle {} are to stop", agent);
 }
 
 std::vector<Fleet::Order> Fleet::Orders(Time now) {

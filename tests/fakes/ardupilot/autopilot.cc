@@ -47,6 +47,7 @@ void ArdupilotAutopilot::Enter(Mode mode) {
 
 bool ArdupilotAutopilot::Arm(bool arm) {
   if (!arm) {
+    if (is_flying()) return false;
     is_armed_ = false;
     return true;
   }

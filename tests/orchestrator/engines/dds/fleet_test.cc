@@ -108,12 +108,23 @@ TEST_F(FleetTest, AProcessThatEndsIsALossAndSaysNothingMore) {
 
 TEST_F(FleetTest, StopsTheMotorsOfOneUntilItIsDown) {
   AllAre(FlightPhase::kFlying);
-  EXPECT_EQ(fleet_.StopMotors(2, "asked to"), "the motors of vehicle 2 stop");
+  EXPECT_EQ(fleet_.StopMotors(2, "asked to"), "the motors of vehicle 2 are to stop");
   EXPECT_THAT(Orders(), ElementsAre("stop 2: asked to"));
   EXPECT_THAT(Orders(), ElementsAre("stop 2: asked to"));
-  Says(2, FlightPhase::kLost, "lost: its motors are stopped");
+  Says(2, FlightPhase::kLost, "lost: its motors stand");
   EXPECT_THAT(Orders(), ElementsAre("land 1: vehicle 2 is lost"));
   EXPECT_THAT([&] { fleet_.StopMotors(4, ""); }, ThrowsMessage<std::invalid_argument>("kill: agent 4 has no vehicle"));
+}
+
+TEST_F(FleetTest, DoesNotSayThatMotorsStopIfNobodyCanStopThem) {
+  AllAre(FlightPhase::kFlying);
+  fleet_.OnProcessEnd(1, "was killed by signal 9 (Killed)");
+  EXPECT_THAT([&] { fleet_.StopMotors(1, ""); },
+              ThrowsMessage<std::invalid_argument>(
+                  "kill: the process of vehicle 1 has ended: nobody is there who could stop its motors"));
+  Says(2, FlightPhase::kAbsent, "absent");
+  EXPECT_THAT([&] { fleet_.StopMotors(2, ""); },
+              ThrowsMessage<std::invalid_argument>("kill: nothing is heard of vehicle 2"));
 }
 
 TEST_F(FleetTest, RefusesStatusesOfVehiclesThatThereAreNot) {
