@@ -36,11 +36,6 @@ Eigen::Quaterniond SwapOrientation(const Eigen::Quaterniond& q) {
 
 double SwapYaw(double yaw_rad) { return std::remainder(std::numbers::pi / 2 - yaw_rad, 2 * std::numbers::pi); }
 
-double YawOf(const Eigen::Quaterniond& q_WB) {
-  const Eigen::Vector3d forward_W = q_WB * Eigen::Vector3d::UnitX();
-  return forward_W.head<2>().isZero(0) ? 0 : std::atan2(forward_W.y(), forward_W.x());
-}
-
 Motion LocalFrame::ToWorld(const Motion& in_L) const { return Turned(in_L, AboutUp(yaw_WL), p_WL); }
 
 Motion LocalFrame::FromWorld(const Motion& in_W) const {

@@ -22,8 +22,6 @@ Eigen::Vector3d SwapBodyAxes(const Eigen::Vector3d& vector);
 Eigen::Quaterniond SwapOrientation(const Eigen::Quaterniond& q);
 /// Our yaw as theirs, and theirs as ours (rad); in [-pi, pi].
 double SwapYaw(double yaw_rad);
-/// The yaw of an orientation of B in W (rad); 0 if its x axis is vertical.
-double YawOf(const Eigen::Quaterniond& q_WB);
 
 /// The local frame L of a vehicle, in which its estimator says where it is: upright, as W is, with an origin and a
 /// heading of its own. Vehicles that compare with the north have yaw 0.

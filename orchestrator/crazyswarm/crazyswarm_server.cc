@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/yaw.h"
+
 namespace mascot {
 namespace {
 
@@ -26,11 +28,6 @@ std::string In(const std::string& name, std::string_view topic) { return fmt::fo
 /// Whether a topic of this rate has a sample at the tick.
 bool IsDue(const Experiment& experiment, std::int64_t tick, int per_second) {
   return tick % std::max(1, experiment.control.rate_hz / per_second) == 0;
-}
-
-double YawOf(const Eigen::Quaterniond& q) {
-  const Eigen::Vector3d forward = q * Eigen::Vector3d::UnitX();
-  return std::atan2(forward.y(), forward.x());
 }
 
 /// The acceleration in W that a Crazyflie with this set-point gives itself; without one, its motors stand.

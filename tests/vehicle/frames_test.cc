@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "base/yaw.h"
 
 namespace mascot {
 namespace {
