@@ -50,7 +50,7 @@ struct VehicleConfig {
   std::optional<Eigen::AlignedBox3d> fence_W = {};
   double max_error_m = 1;
   OnVehicleLoss on_loss = OnVehicleLoss::kLand;
-  // Of its kind.
+  // What its kind implies:
   bool arms_itself = false;  ///< as soon as it is switched on
   double farthest_m = 1e6;   ///< as far it can be sent along an axis of its local frame
 };

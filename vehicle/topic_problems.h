@@ -19,7 +19,7 @@ class TopicProblems {
   void Set(std::string_view topic, std::string words) {
     std::ranges::find(words_, topic, &std::pair<std::string_view, std::string>::first)->second = std::move(words);
   }
-  /// Of the most important topic with which something is wrong; empty: nothing is.
+  /// What is wrong with the most important topic of those with which something is; empty: nothing is wrong with any.
   std::string First() const {
     const auto wrong = std::ranges::find_if(words_, [](const auto& each) { return !each.second.empty(); });
     return wrong == words_.end() ? "" : wrong->second;

@@ -186,8 +186,9 @@ class Ardupilot final : public Autopilot {
   }
   /// Takes what `heard_` says now, of which `topic` is news; false, if nothing can be flown by it.
   bool Measure(std::string_view topic) {
-    problems_.Set(topic, WhyNotMeasured(heard_));
-    if (!WhyNotMeasured(heard_).empty()) return false;
+    const std::string problem = WhyNotMeasured(heard_);
+    problems_.Set(topic, problem);
+    if (!problem.empty()) return false;
     report_.motion_L = heard_;
     report_.motion_L->q_WB.normalize();
     return true;

@@ -43,7 +43,7 @@ std::optional<Twist> ReadTwist(std::span<const std::uint8_t> sample);
 std::optional<Status> ReadStatus(std::span<const std::uint8_t> sample);
 /// Reads sensor_msgs/BatteryState: the share of the battery that is left, 0 to 1; NaN: unknown.
 std::optional<double> ReadBattery(std::span<const std::uint8_t> sample);
-/// Of the replies of `arm_motors`, `mode_switch` and `takeoff`: whether it was done.
+/// Reads a reply of `arm_motors`, `mode_switch` or `takeoff`: whether it was done.
 std::optional<bool> ReadReply(std::span<const std::uint8_t> sample);
 
 /// TwistStamped in the local frame, without a turn.

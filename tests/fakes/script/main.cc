@@ -111,14 +111,18 @@ class Script {
     const std::vector<double>& place = answer.values().at(0).double_array_value();
     return {place.at(0), place.at(1), place.at(2)};
   }
-  void TakeOff() {
-    Service<cf::srv::Takeoff_Request, cf::srv::Takeoff_RequestPubSubType, cf::srv::Takeoff_Response,
-            cf::srv::Takeoff_ResponsePubSubType>
-        take_off(bridge_, "all/takeoff", "crazyflie_interfaces::srv::dds_::Takeoff");
-    cf::srv::Takeoff_Request request;
-    request.height(static_cast<float>(kHeight_m));
+  /// By `all/takeoff` or `all/land`, whose requests are alike.
+  template <class Request, class RequestType, class Response, class ResponseType>
+  void ToHeight(double height_m, const std::string& service, const std::string& type) {
+    Service<Request, RequestType, Response, ResponseType> all(bridge_, service, type);
+    Request request;
+    request.height(static_cast<float>(height_m));
     request.duration(Seconds(2));
-    take_off.Call(request);
+    all.Call(request);
+  }
+  void TakeOff() {
+    ToHeight<cf::srv::Takeoff_Request, cf::srv::Takeoff_RequestPubSubType, cf::srv::Takeoff_Response,
+             cf::srv::Takeoff_ResponsePubSubType>(kHeight_m, "all/takeoff", "crazyflie_interfaces::srv::dds_::Takeoff");
   }
   void GoTo() {
     Service<cf::srv::GoTo_Request, cf::srv::GoTo_RequestPubSubType, cf::srv::GoTo_Response,
@@ -146,13 +150,8 @@ class Script {
             cf::srv::NotifySetpointsStop_Response, cf::srv::NotifySetpointsStop_ResponsePubSubType>
         stop(bridge_, name_ + "/notify_setpoints_stop", "crazyflie_interfaces::srv::dds_::NotifySetpointsStop");
     stop.Call({});
-    Service<cf::srv::Land_Request, cf::srv::Land_RequestPubSubType, cf::srv::Land_Response,
-            cf::srv::Land_ResponsePubSubType>
-        land(bridge_, "all/land", "crazyflie_interfaces::srv::dds_::Land");
-    cf::srv::Land_Request request;
-    request.height(static_cast<float>(kLow_m));
-    request.duration(Seconds(2));
-    land.Call(request);
+    ToHeight<cf::srv::Land_Request, cf::srv::Land_RequestPubSubType, cf::srv::Land_Response,
+             cf::srv::Land_ResponsePubSubType>(kLow_m, "all/land", "crazyflie_interfaces::srv::dds_::Land");
   }
   void Reach(const std::string& what, const Place& place, const std::function<void()>& meanwhile = {}) {
     Place here{};
