@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/contacts.h"
 #include "base/pacing.h"
+#include "experiment/events.h"
 
 namespace mascot {
 
@@ -15,7 +17,10 @@ inline constexpr const char* kInProcess = "inprocess";
 
 /// Result of a run; the same for both engines.
 struct EngineResult {
-  std::string failure;               ///< why the run failed; empty: it ran to its end, or was stopped in order
+  std::string failure;  ///< why the run failed; empty: it ran to its end, or was stopped in order
+  /// Losses of agents that have not answered the tick of the last row (Fault::unanswered): events of the next tick,
+  /// which was not flown. Without those of the file.
+  std::vector<Event> unanswered;
   int signal = 0;                    ///< the signal that stopped the run early; 0: none
   double wall_s = 0;                 ///< wall-clock time from tick 0 to the last command
   double startup_s = 0;              ///< wall-clock time from the launch to tick 0

@@ -88,6 +88,7 @@ void Episodes::End() {
   if (witnesses_.empty()) return;
   result_.wall_s = std::chrono::duration<double>(Clock::now() - began_).count();
   result_.contacts = flight_->contacts();
+  result_.unanswered = flight_->unanswered();
   for (EpisodeWitness* const witness : std::exchange(witnesses_, {})) witness->End(result_);
 }
 

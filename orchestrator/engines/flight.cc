@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -124,6 +125,13 @@ void Flight::Lose(int id, std::int64_t tick) {
   row_.commands[i] = kept_[i];
   const Fault fault{.agent = id, .kind = FaultKind::kKill, .unanswered = true};
   by_hand_.push_back({.tick = tick + 1, .fault = fault, .where = fmt::format("agent {}", id)});
+}
+
+std::vector<Event> Flight::unanswered() const {
+  std::vector<Event> losses;
+  std::ranges::copy_if(by_hand_, std::back_inserter(losses),
+                       [](const Event& event) { return event.fault && event.fault->unanswered; });
+  return losses;
 }
 
 /// Takes the events of this tick: first the file's, then those given by hand, then what run.on_agent_loss brings.

@@ -70,6 +70,8 @@ class Flight {
   /// The pace that an event of the newest tick has set; nullopt: none has.
   std::optional<double> new_pace() const { return new_pace_; }
   Contacts contacts() const { return world_.contacts(); }
+  /// EngineResult::unanswered, if the row of the last Exchange() is the last.
+  std::vector<Event> unanswered() const;
 
  private:
   /// The tick of events that are given by hand now.

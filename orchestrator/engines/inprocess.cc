@@ -58,7 +58,10 @@ EngineResult RunInProcess(const Experiment& experiment, const std::vector<RowSin
   }
   result.wall_s = std::chrono::duration<double>(WallClock::now() - start).count();
   result.startup_s = std::chrono::duration<double>(start - launched).count();
-  if (flight) result.contacts = flight->contacts();
+  if (flight) {
+    result.contacts = flight->contacts();
+    result.unanswered = flight->unanswered();
+  }
   return result;
 }
 

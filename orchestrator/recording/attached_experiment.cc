@@ -1,5 +1,6 @@
 #include "orchestrator/recording/attached_experiment.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "agent/laws/laws.h"
@@ -55,6 +56,9 @@ std::string WithoutEvents(const Experiment& experiment) {
 }
 
 std::string StoppedAfter(const Experiment& experiment, std::int64_t ticks) {
+  ticks += std::ranges::any_of(experiment.events, [next = ticks + 1](const Event& event) {
+    return event.tick == next && event.fault && event.fault->unanswered;
+  });
   const double duration_s = experiment.time_s(ticks);
   std::vector<Override> changes{{.key = "run.duration_s", .value = ShortestFloat(duration_s)}};
   const Value file{Section::FromText(experiment.resolved, "config.toml").InTheFile()};

@@ -24,8 +24,9 @@ std::string WithOverrides(const Experiment& experiment, const std::vector<Overri
 /// The experiment with these events, given by hand, behind its own. Throws as WithOverrides() does.
 Experiment WithEvents(const Experiment& experiment, const std::vector<Event>& by_hand);
 
-/// The resolved experiment of a run that was stopped after so many ticks, at least 1: it repeats what was flown. Events
-/// that were still to come are left out. Throws as WithOverrides() does.
+/// The resolved experiment of a run that was stopped after so many ticks, at least 1: it repeats what was flown, and
+/// flies one tick more if agents have not answered the last one, because events of the next tick say so. Events that
+/// were still to come are left out. Throws as WithOverrides() does.
 std::string StoppedAfter(const Experiment& experiment, std::int64_t ticks);
 
 }  // namespace mascot

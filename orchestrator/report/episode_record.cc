@@ -44,7 +44,7 @@ void EpisodeRecord::End(const EngineResult& result) {
   if (running_ == nullptr) return;
   std::unique_ptr<Running> run = std::move(running_);
   const std::vector<Event> by_hand = run->requests.by_hand();
-  const Experiment flown = run->files.Complete(by_hand, result.failure.empty());
+  const Experiment flown = run->files.Complete(by_hand, result);
   if (!by_hand.empty()) run->prediction = Predict(flown);
   const FlownRun whole{.experiment = run->experiment,
                        .prediction = run->prediction,

@@ -28,12 +28,14 @@ void RunFiles::AddTo(std::vector<RowSink*>& sinks) {
   sinks.insert(sinks.end(), {&writes_, &meter_, &curve_});
 }
 
-Experiment RunFiles::Complete(const std::vector<Event>& by_hand, bool in_order) {
+Experiment RunFiles::Complete(std::vector<Event> by_hand, const EngineResult& result) {
+  by_hand.insert(by_hand.end(), result.unanswered.begin(), result.unanswered.end());
   Experiment flown = WithEvents(experiment_, by_hand);
   if (!by_hand.empty()) folder_.Write("config.toml", flown.resolved);
   writes_.Finish();
   const std::int64_t ticks = writer_.ticks() - 1;  // row 0 is the start
-  if (in_order && ticks > 0 && ticks < experiment_.ticks()) folder_.Write("config.toml", StoppedAfter(flown, ticks));
+  if (result.failure.empty() && ticks > 0 && ticks < experiment_.ticks())
+    folder_.Write("config.toml", StoppedAfter(flown, ticks));
   writer_.Close(WithoutDelivery(flown));
   return flown;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "experiment/experiment.h"
+#include "orchestrator/engines/engine.h"
 #include "orchestrator/engines/scene_edges.h"
 #include "orchestrator/measuring/incident_meter.h"
 #include "orchestrator/measuring/law_curve.h"
@@ -25,9 +26,8 @@ class RunFiles {
   /// Adds the sinks that write and measure the run, the meter among them. They must be the first of all sinks.
   void AddTo(std::vector<RowSink*>& sinks);
   /// Completes the recording when the run is over, with config.toml: that of what was flown. `by_hand`: the events that
-  /// the run was given; `in_order`: it has not failed, though it may have ended early. Returns the experiment with
-  /// these events.
-  Experiment Complete(const std::vector<Event>& by_hand, bool in_order);
+  /// the run was given. Returns the experiment with these events.
+  Experiment Complete(std::vector<Event> by_hand, const EngineResult& result);
   /// Writes the tables, after Complete().
   void WriteTables(const Incidents& incidents) const;
 

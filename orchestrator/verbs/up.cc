@@ -213,7 +213,7 @@ int Up(UpArgs& args) {
   EngineResult result = flight.Fly();
   console.EndProgress();
   try {
-    const Experiment flown = files.Complete(requests.by_hand(), ExitCode(result) != 1);
+    const Experiment flown = files.Complete(requests.by_hand(), result);
     if (!requests.by_hand().empty()) prediction = Predict(flown);
   } catch (const std::exception& failure) {
     if (result.failure.empty()) result.failure = InWords(failure);

@@ -151,6 +151,31 @@ TEST(Losses, ByALawThatFailsAtTheLastTickFailTheRun) {
   EXPECT_EQ(one.Summary()["ticks"], dds.Summary()["ticks"]);
 }
 
+/// Each tick one more agent's law fails, and the run is stopped meanwhile: agents that have not answered the last tick
+/// are lost by events of a tick that is not flown.
+TEST(Losses, AtTheLastTickOfARunThatIsStoppedFlyAgainByteForByte) {
+  for (const auto& [engine, of_run] : {std::pair("inprocess", "os.getpid()"), std::pair("dds", "os.getppid()")}) {
+    SCOPED_TRACE(engine);
+    ScratchFolder folder;
+    WriteFile(
+        folder.File("law.py"),
+        std::string("import ctypes, os\ndef control(t, me, neighbours):\n    tick = round(100 * t)\n"
+                    "    if me.id == 5 and tick == 55:\n        ctypes.CDLL(None).kill(") +
+            of_run +
+            ", 15)\n    if tick == 50 + me.id:\n        raise ValueError('broken')\n    return [0.0, 0.0, 0.0]\n");
+    WriteFile(folder.File("team.toml"),
+              "[run]\nduration_s = 1000.0\non_agent_loss = 'hold'\n[agents]\ncount = 20\nmodel = "
+              "'double_integrator'\n[graph]\ntopology = 'ring'\n[output]\nfidelity = false\n[law]\nname = "
+              "'custom'\nfile = '" +
+                  folder.File("law.py") + "'\n");
+    Up up(folder, "run", folder.File("team.toml"), {"--engine", engine});
+    EXPECT_EQ(up.Wait(), 128 + SIGTERM) << up.err();
+    const auto ticks = up.Summary()["ticks"].get<int>();
+    EXPECT_THAT(ticks, testing::AllOf(testing::Gt(50), testing::Lt(70))) << "agents fail, the last tick among them";
+    EXPECT_THAT(Verified(up).output, HasSubstr("the same, bit for bit"));
+  }
+}
+
 TEST(Losses, EndTheRunByDefault) {
   ScratchFolder folder;
   WriteFile(folder.File("end.toml"), Ring("duration_s = 3.0", At("0.5", "fault = { agent = 3, kind = 'kill' }")));

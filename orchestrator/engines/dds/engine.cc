@@ -108,6 +108,7 @@ class DdsRun {
   void LookAtFleet();
   void SteerFleet();
   void BringDown();
+  bool IsOfFile(const Event& event) const;
   void TellLossBy(const Event& event);
   bool HaveHeardAllFrom(AgentRange agents) const;
   void SayFarewell(const std::string& process) const;
@@ -126,6 +127,7 @@ class DdsRun {
   void DrainAll();
   void AwaitReport();
   void Collect();
+  std::vector<Event> UnansweredAtLast() const;
   void TakeReport();
   void AwaitAgentsByHand();
   void LeaveDomain();
@@ -630,11 +632,15 @@ bool DdsRun::HearHosts() try { return launcher_->Pump(); } catch (const std::exc
   return false;
 }
 
+bool DdsRun::IsOfFile(const Event& event) const {
+  return std::ranges::any_of(
+      experiment_.events, [&](const Event& other) { return other.tick == event.tick && other.Toml() == event.Toml(); });
+}
+
 /// Tells of an agent that hangs, as the physics server has noticed.
 void DdsRun::TellLossBy(const Event& event) {
   if (!event.fault || !event.fault->IsLoss()) return;
-  const bool is_of_file = std::ranges::any_of(
-      experiment_.events, [&](const Event& other) { return other.tick == event.tick && other.Toml() == event.Toml(); });
+  const bool is_of_file = IsOfFile(event);
   const int agent = event.fault->agent;
   lost_by_[agent] = {event.tick, is_of_file};
   if (event.fault->kind == FaultKind::kHang && !is_of_file)
@@ -839,6 +845,7 @@ void DdsRun::Collect() {
     phases_.Fail(InWords(failure));
   }
   result_.lost = recorder_->lost();
+  result_.unanswered = UnansweredAtLast();
   CheckWire();
   const bool violated = !audit_.Violation().empty();
   if (violated || phases_.found_everybody()) result_.wire_matches_graph = !violated;
@@ -848,6 +855,17 @@ void DdsRun::Collect() {
   }
   AwaitReport();
   TakeReport();
+}
+
+/// EngineResult::unanswered
+std::vector<Event> DdsRun::UnansweredAtLast() const {
+  std::vector<Event> losses;
+  for (const mascot_msgs::msg::Event& sample : recorder_->Events()) {
+    Event event = FromWire(sample, experiment_.size());
+    if (event.tick == confirmed_ && event.fault && event.fault->unanswered && !IsOfFile(event))
+      losses.push_back(std::move(event));
+  }
+  return losses;
 }
 
 void DdsRun::TakeReport() {

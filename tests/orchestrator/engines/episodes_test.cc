@@ -38,12 +38,16 @@ class Seen final : public EpisodeWitness, public RowSink {
     rows.push_back(row.decoded().motions[1].p_WB);
     ticks.push_back(row.tick());
   }
-  void End(const EngineResult& result) override { failures.push_back(result.failure); }
+  void End(const EngineResult& result) override {
+    failures.push_back(result.failure);
+    unanswered = result.unanswered;
+  }
 
   std::vector<std::uint64_t> begun;
   std::vector<Eigen::Vector3d> rows;
   std::vector<std::int64_t> ticks;
   std::vector<std::string> failures;
+  std::vector<Event> unanswered;
 };
 
 void Fly(Episodes& episodes, ActionSource& source, std::int64_t until) {
@@ -111,6 +115,31 @@ TEST(Episodes, AreSeenFromTheirStartOnIfTheyMove) {
   EXPECT_THAT(seen.begun, ElementsAre(3u));
   EXPECT_THAT(seen.ticks, ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(seen.failures, ElementsAre(""));
+}
+
+TEST(Episodes, ThatEndWhenALawHasFailedTellWhoHasNotAnsweredTheirLastTick) {
+  ScratchFolder folder;
+  WriteFile(folder.File("law.py"),
+            "def control(t, me, neighbours):\n    if me.id == 2 and round(100 * t) == 10:\n        raise "
+            "ValueError('broken')\n    return [0.0, 0.0, 0.0]\n");
+  const std::string file =
+      "[run]\nduration_s = 1.0\non_agent_loss = 'hold'\n[agents]\ncount = 2\n[law]\nname = "
+      "'custom'\nfile = 'law.py'\n";
+  for (int steps = 8; steps <= 12; ++steps) {
+    SCOPED_TRACE(steps);
+    Episodes episodes(file, folder.File("pair.toml"), {});
+    Seen seen;
+    episodes.SetWitnesses({&seen});
+    episodes.Reset({});
+    for (int k = 0; k < steps; ++k) episodes.Step();
+    const std::int64_t last = episodes.tick();
+    episodes.Finish();
+    EXPECT_EQ(seen.ticks.back(), last);
+    ASSERT_EQ(seen.unanswered.size(), last == 10 ? 1u : 0u);
+    if (last != 10) continue;
+    EXPECT_EQ(seen.unanswered[0].tick, 11);
+    EXPECT_EQ(seen.unanswered[0].fault->agent, 2);
+  }
 }
 
 /// Counts how often it is asked to wait, and does then what a test says.
