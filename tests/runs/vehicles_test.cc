@@ -50,6 +50,26 @@ class Vehicles : public ::testing::Test {
 const std::string kPx4 = "kind = 'px4'\n";
 constexpr double kEndless = 1000;  // s
 
+/// The file at the top of docs/vehicles.md, and the vehicles of its dry run.
+TEST_F(Vehicles, OfTheirPageFlyAndKeepApart) {
+  const std::string page = ReadFile(MASCOT_SOURCE_DIR "/docs/vehicles.md"), begin = "```toml\n";
+  const std::size_t from = page.find(begin) + begin.size();
+  WriteFile(folder_.File("team.toml"), page.substr(from, page.find("```", from) - from));
+  for (const char* words : {"--namespace px4_1 --system-id 2 --place 4,0,0 &", "--place 0,4,0 --release 1.18 &"})
+    EXPECT_THAT(page, HasSubstr(words));
+  airfield_.AddPx4(1, "4,0,0");
+  airfield_.AddPx4(2, "0,4,0", {"--release", "1.18"});
+  Up up = Fly(folder_.File("team.toml"),
+              {"--go", "--set", "output.save_plot=false", "--set",
+               "vehicles=[{ agents = [1, 2], kind = 'px4', address = '127.0.0.1', domain = " +
+                   std::to_string(airfield_.domain()) + ", fence = [[-2, -2, 0], [6, 6, 3]] }]"});
+  EXPECT_EQ(up.Wait(), 0) << up.err();
+  EXPECT_EQ(up.Summary()["safety"]["collisions"], 0);
+  EXPECT_GT(up.Summary()["safety"]["min_separation_m"], 1.0);
+  for (const char* vehicle : {"1", "2"})
+    EXPECT_THAT(up.err(), HasSubstr(std::string("vehicle ") + vehicle + ": landed"));
+}
+
 TEST_F(Vehicles, TakeOffFlyAndLand) {
   airfield_.AddPx4(1, "0,0,0");
   airfield_.AddPx4(2, "4,0,0", {"--release", "1.18"});

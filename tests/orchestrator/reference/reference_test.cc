@@ -139,6 +139,27 @@ TEST(LawPage, TypesetsEachEquationWithALetterForEachNumberThatThePlainOneNames) 
   }
 }
 
+/// Blocks of TOML that are whole files: they have [run] and [agents], and need no other file.
+TEST(Pages, HaveFilesThatAreLegal) {
+  std::vector<fs::path> pages{kSource / "README.md"};
+  for (const auto& entry : fs::directory_iterator(kSource / "docs"))
+    if (entry.path().extension() == ".md") pages.push_back(entry.path());
+  const std::string begin = "\n```toml", end = "\n```\n";
+  int files = 0;
+  for (const fs::path& page : pages) {
+    const std::string text = ReadFile(page);
+    for (std::size_t at = text.find(begin); at != text.npos; at = text.find(begin, at + 1)) {
+      const std::size_t from = text.find('\n', at + begin.size()) + 1;
+      const std::string block = text.substr(from, text.find(end, from) + 1 - from);
+      const auto has = [&](const std::string& words) { return block.find(words) != block.npos; };
+      if (!has("[run]") || !has("[agents]") || has("file = ")) continue;
+      ++files;
+      EXPECT_NO_THROW(LoadExperiment(Section::FromText(block, page.filename()), "page")) << block;
+    }
+  }
+  EXPECT_GE(files, 6);
+}
+
 TEST(LawPage, BreaksTheEquationOfAFewFormulasIntoLines) {
   LawEntry two{};
   two.tex = "a = b \\\\\nc = d";
