@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/yaw.h"
 #include "vehicle/frames.h"
 #include "vehicle/pilot.h"
 #include "vehicle/place_text.h"
@@ -29,12 +30,17 @@ PreflightLine LineOf(const Experiment& experiment, const VehicleSeen& seen) {
     return line;
   }
   const PilotRules rules = PilotRulesOf(experiment, seen.agent);
-  const Eigen::Vector3d p_W = rules.frame.ToWorld(*report.motion_L).p_WB;
+  const Motion motion = rules.frame.ToWorld(*report.motion_L);
+  const Eigen::Vector3d& p_W = motion.p_WB;
   line.p_W = p_W;
   line.from_start_m = (p_W - agent.p_W).head<2>().norm();
-  line.seen = fmt::format("{}, {:.1f} Hz, {:.2f} s old, at {}, {:.2f} m from its start{}", report.release, seen.rate_hz,
-                          seen.age_s, PlaceText(p_W), line.from_start_m,
-                          report.battery ? fmt::format(", battery {:.0f} %", 100 * *report.battery) : "");
+  line.seen = fmt::format(
+      "{}, {:.1f} Hz, {:.2f} s old, at {}, heading {:.2f} rad, {:.2f} m from its start; its frame's origin at {}, "
+      "turned "
+      "by {:.2f} rad; battery {}",
+      report.release, seen.rate_hz, seen.age_s, PlaceText(p_W), ToHundredths(YawOf(motion.q_WB)), line.from_start_m,
+      PlaceText(rules.frame.p_WL), rules.frame.yaw_WL,
+      report.battery ? fmt::format("{:.0f} %", 100 * *report.battery) : "unknown");
   line.refusals = WhyNotToStart(rules, report, p_W);
   if (seen.age_s > kMaxAge_s) refuse(fmt::format("nothing has been heard of where it is for {:.1f} s", seen.age_s));
   if (seen.rate_hz < kLeastRate_hz)

@@ -22,7 +22,7 @@ struct VehicleSeen {
 /// What is said of a vehicle before a flight.
 struct PreflightLine {
   int agent = 0;
-  std::string seen = {};                    ///< "PX4 1.16 or 1.17, 99.8 Hz, 0.01 s old, at [0.02, 4.01, 0.00]"
+  std::string seen = {};                    ///< "PX4 1.18, 99.8 Hz, 0.01 s old, at [0.02, 4.01, 0.00], ..."
   std::optional<Eigen::Vector3d> p_W = {};  ///< where it is (m)
   double from_start_m = 0;                  ///< from its agent's start, in the plane
   std::vector<std::string> refusals = {};   ///< why it may not fly; empty: it may

@@ -39,8 +39,19 @@ TEST_F(PreflightTest, LetsThoseFlyThatStandWhereTheFileSays) {
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_THAT(lines[0].refusals, IsEmpty());
   EXPECT_THAT(lines[1].refusals, IsEmpty());
-  EXPECT_EQ(lines[0].seen, "PX4 1.16 or 1.17, 100.0 Hz, 0.01 s old, at [0.10, 0.00, 0.00], 0.10 m from its start");
+  EXPECT_EQ(lines[0].seen,
+            "PX4 1.16 or 1.17, 100.0 Hz, 0.01 s old, at [0.10, 0.00, 0.00], heading 0.00 rad, 0.10 m from its start; "
+            "its frame's origin at [0.00, 0.00, 0.00], turned by 0.00 rad; battery unknown");
   EXPECT_EQ(*lines[1].p_W, Eigen::Vector3d(4, 0.2, 0)) << "its origin is at its agent's start";
+}
+
+TEST_F(PreflightTest, TellsFrameHeadingAndBattery) {
+  VehicleSeen seen = At(1, {0, -0.001, 0});
+  seen.report.motion_L->q_WB = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ());
+  seen.report.battery = 0.87;
+  EXPECT_EQ(Preflight(Pair("origin = [1.0, 2.0, 0.0]\nyaw_rad = 0.25\n"), {seen, At(2, {0, 0, 0})})[0].seen,
+            "PX4 1.16 or 1.17, 100.0 Hz, 0.01 s old, at [1.00, 2.00, 0.00], heading 0.75 rad, 2.24 m from its start; "
+            "its frame's origin at [1.00, 2.00, 0.00], turned by 0.25 rad; battery 87 %");
 }
 
 TEST_F(PreflightTest, RefusesWhatATestPilotWould) {
