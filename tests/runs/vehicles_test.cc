@@ -166,7 +166,8 @@ TEST_F(Vehicles, TwentyFiveFlyFromOneMachine) {
     places += fmt::format("[{}, {}, 0.8],", x_m, y_m);
   }
   WriteFile(folder_.File("large.toml"),
-            "[run]\nmode = 'realtime'\nagent_timeout_s = 5.0\nduration_s = 2.0\n[agents]\ncount = 25\n"
+            "[run]\nmode = 'realtime'\nagent_timeout_s = 5.0\nduration_s = 2.0\nstart_timeout_s = 150.0\n[graph]\n"
+            "topology = 'ring'\n[agents]\ncount = 25\n"
             "model = 'double_integrator'\nposition_m = [" +
                 places +
                 "]\n[law]\nname = 'consensus'\np_gain = 0.02\n[output]\nsave_plot = false\n[[vehicles]]\n"
