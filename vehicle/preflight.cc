@@ -36,8 +36,7 @@ PreflightLine LineOf(const Experiment& experiment, const VehicleSeen& seen) {
   line.from_start_m = (p_W - agent.p_W).head<2>().norm();
   line.seen = fmt::format(
       "{}, {:.1f} Hz, {:.2f} s old, at {}, heading {:.2f} rad, {:.2f} m from its start; its frame's origin at {}, "
-      "turned "
-      "by {:.2f} rad; battery {}",
+      "turned by {:.2f} rad; battery {}",
       report.release, seen.rate_hz, seen.age_s, PlaceText(p_W), ToHundredths(YawOf(motion.q_WB)), line.from_start_m,
       PlaceText(rules.frame.p_WL), rules.frame.yaw_WL,
       report.battery ? fmt::format("{:.0f} %", 100 * *report.battery) : "unknown");

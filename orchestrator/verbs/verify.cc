@@ -108,7 +108,7 @@ int Report(const Subject& subject, const Comparison& comparison, const EngineRes
   if (!comparison.difference().empty()) {
     say("differs: " + comparison.difference());
     code = kExitFailed;
-  } else if (!result.failure.empty() && std::cmp_less(comparison.ticks(), subject.ticks)) {
+  } else if (!result.failure.empty()) {
     say("differs: it goes on after " + extent + ", where the run now fails: " + result.failure);
     code = kExitFailed;
   } else if (result.signal != 0) {
@@ -151,7 +151,11 @@ int Verify(const VerifyArgs& args) {
   Crew crew = args.engine.MakeCrew(experiment, /*others=*/0);
   EngineRun flight(args.engine.name, experiment, folder, sinks, nullptr, console, stop, crew,
                    /*ros=*/nullptr, actions ? &*actions : nullptr);
-  const EngineResult result = flight.Fly();
+  EngineResult result = flight.Fly();
+  // Who has not answered the last tick is lost by events of the next one (StoppedAfter()): what fails there is behind
+  // the recording.
+  const bool has_all = std::cmp_equal(comparison.ticks(), subject.ticks);
+  if (has_all && std::cmp_greater_equal(experiment.ticks(), subject.ticks)) result.failure.clear();
   if (result.failure.empty() && result.signal == 0) comparison.Finish();
   const int code = Report(subject, comparison, result);
   if (code == kExitFailed)
