@@ -11,6 +11,7 @@
 #include "agent/agent.h"
 #include "orchestrator/report/prediction_report.h"
 #include "orchestrator/team/ideal_team.h"
+#include "tests/support/folders.h"
 #include "tests/support/law_run.h"
 #include "tests/support/scratch.h"
 
@@ -307,7 +308,7 @@ TEST(Safety, IsAroundLawsOfPythonAndOfLibraries) {
   const std::string python =
       "name = 'custom'\noutput = 'velocity'\npython = '''\ndef control(t, me, neighbours):\n"
       "  return sum(2.0 * (j.position - me.position) for j in neighbours)\n'''\n";
-  const std::string library = "name = 'plugin'\nlibrary = '" MASCOT_BINARY_DIR "/tests/plugins/libmirror.so'\n";
+  const std::string library = "name = 'plugin'\nlibrary = '" + test::BuildFolder() + "/tests/plugins/libmirror.so'\n";
   for (const std::string& law : {python, library}) {
     const PlaceList places = {{0, 0, 2}, {5, 0, 2}};
     const double without_m = MinDistance_m(TeamOf("single_integrator", places, law, "", "", 5));
@@ -378,7 +379,7 @@ TEST(Safety, SaysOfARunInWhichTheConditionOfThePromiseDidNotHoldThatItDidNot) {
 // --- the shipped experiment -------------------------------------------------------------------------------
 
 TEST(Crossing, KeepsTenQuadrotorsApartOnTheirWayToThePlacesOpposite) {
-  const std::string crossing = ReadFile(MASCOT_SOURCE_DIR "/configs/crossing.toml");
+  const std::string crossing = ReadFile(test::SourceFolder() + "/configs/crossing.toml");
   const LawRun run(crossing);
   const auto& safety = run.summary["safety"];
   EXPECT_EQ(safety["infeasible_ticks"], 0);

@@ -25,6 +25,7 @@
 #include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "orchestrator/engines/dds/ros_publisher.h"
 #include "system/stop_signal.h"
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -685,7 +686,7 @@ TEST(DomainLock, NeedsNoFile) {  // which another user may have made, or may not
 
 // --- programs started by hand ---------------------------------------------------------------------------
 
-Ran Agent(const std::string& arguments) { return Shell("'" MASCOT_BINARY_DIR "/agent' " + arguments); }
+Ran Agent(const std::string& arguments) { return Shell("'" + BuildFolder() + "/agent' " + arguments); }
 
 TEST(AgentProcess, SaysThatNobodyGaveItAnExperiment) {
   const DomainLock lock(-1);

@@ -10,6 +10,7 @@
 
 #include "agent/laws/laws.h"
 #include "tests/experiment/bad_config.h"
+#include "tests/support/folders.h"
 #include "tests/support/param_name.h"
 #include "tests/support/scratch.h"
 
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> Corpus() {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(MASCOT_SOURCE_DIR "/tests/bad_configs"))
+  for (const auto& entry : fs::directory_iterator(test::SourceFolder() + "/tests/bad_configs"))
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
@@ -49,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Corpus, BadConfig, ::testing::ValuesIn(Corpus()),
 
 TEST(BadConfigs, AreManyAndEachHasItsExpectation) {
   EXPECT_GE(Corpus().size(), 100u);
-  for (const auto& entry : fs::directory_iterator(MASCOT_SOURCE_DIR "/tests/bad_configs"))
+  for (const auto& entry : fs::directory_iterator(test::SourceFolder() + "/tests/bad_configs"))
     EXPECT_TRUE(fs::exists(fs::path(entry.path()).replace_extension(".toml"))) << entry.path();
 }
 

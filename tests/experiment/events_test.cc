@@ -9,6 +9,7 @@
 #include "agent/laws/laws.h"
 #include "experiment/live_experiment.h"
 #include "tests/experiment/fly_rows.h"
+#include "tests/support/folders.h"
 #include "tests/support/param_name.h"
 #include "tests/support/scratch.h"
 
@@ -524,7 +525,7 @@ TEST(Events, TellPythonLawsTheirNewParams) {
 
 TEST(Events, TellPluginsTheirNewParams) {
   const auto library = [](const std::string& name) {
-    return "name = 'plugin'\nlibrary = '" MASCOT_BINARY_DIR "/tests/plugins/lib" + name + ".so'\n";
+    return "name = 'plugin'\nlibrary = '" + test::BuildFolder() + "/tests/plugins/lib" + name + ".so'\n";
   };
   const auto without = Fly(Three(library("mirror"))),
              with = Fly(Three(library("mirror")) + EventTable("set = { \"law.params.gain\" = 2.0 }"));

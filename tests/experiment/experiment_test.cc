@@ -12,6 +12,7 @@
 #include "agent/laws/laws.h"
 #include "experiment/placement.h"
 #include "experiment/processes.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -790,7 +791,7 @@ TEST(ResolvedExperiment, IsTheSameAgainWhenRead) {
                "[[agents.override]]\nid = 2\nairframe = { mass_kg = 2 }\n[[agents.override]]\nid = 3\nhost = "
                "'external'\n")})
     experiments.push_back(Load(text));
-  for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::SourceFolder() + "/configs")) {
     if (entry.path().extension() == ".toml")
       experiments.push_back(LoadExperiment(Section::FromFile(entry.path()), "test"));
   }

@@ -18,6 +18,7 @@
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/recording/state_arrays.h"
 #include "orchestrator/team/row_sink.h"
+#include "tests/support/folders.h"
 
 namespace mascot::test {
 
@@ -26,8 +27,8 @@ class Flight final : private RowSink {
  public:
   /// Flies configs/leaderless.toml with these overrides.
   explicit Flight(const std::vector<Override>& overrides)
-      : experiment(LoadExperiment(
-            Section::FromFile(std::string(MASCOT_SOURCE_DIR) + "/configs/leaderless.toml", overrides), "leaderless")) {
+      : experiment(
+            LoadExperiment(Section::FromFile(SourceFolder() + "/configs/leaderless.toml", overrides), "leaderless")) {
     EXPECT_EQ(RunInProcess(experiment, {this}, [] { return true; }).failure, "");
   }
 

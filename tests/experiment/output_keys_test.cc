@@ -6,6 +6,7 @@
 #include <map>
 
 #include "orchestrator/formats/mcap/reader.h"
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -110,7 +111,7 @@ TEST(OutputKey, OutputPlotsAreMadeAsAskedFor) {
 
 TEST(OutputKey, OutputShowPlotWithoutADisplaySaysSoAndDrawsAsWell) {
   ScratchFolder folder;
-  const Ran run = Shell("env -u DISPLAY -u WAYLAND_DISPLAY '" MASCOT_BINARY_DIR "/orchestrator' up '" +
+  const Ran run = Shell("env -u DISPLAY -u WAYLAND_DISPLAY '" + BuildFolder() + "/orchestrator' up '" +
                         Config("leaderless") + "' --engine inprocess --duration-s 0.5 --set output.show_plot=true " +
                         "--out '" + folder.File("run") + "'");
   EXPECT_EQ(run.exit_code, 0) << run.output;
@@ -120,7 +121,7 @@ TEST(OutputKey, OutputShowPlotWithoutADisplaySaysSoAndDrawsAsWell) {
 
 TEST(OutputKey, OutputShowPlotNeedsNeitherPicturesNorArraysAsFiles) {
   ScratchFolder folder;
-  const Ran run = Shell("env -u DISPLAY -u WAYLAND_DISPLAY '" MASCOT_BINARY_DIR "/orchestrator' up '" +
+  const Ran run = Shell("env -u DISPLAY -u WAYLAND_DISPLAY '" + BuildFolder() + "/orchestrator' up '" +
                         Config("leaderless") + "' --engine inprocess --duration-s 0.5 --set output.show_plot=true " +
                         "--set output.save_plot=false --set output.save_data=false --out '" + folder.File("run") + "'");
   EXPECT_EQ(run.exit_code, 0) << run.output;

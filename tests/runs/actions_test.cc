@@ -16,6 +16,7 @@
 #include "orchestrator/verbs/fly.h"
 #include "system/console.h"
 #include "system/descendants.h"
+#include "tests/support/folders.h"
 #include "tests/support/load.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/param_name.h"
@@ -200,7 +201,7 @@ TEST(Actions, OfAgentsThatAreKilledForRealFlyAgain) {
     EXPECT_EQ(flown.result.failure, "");
     EXPECT_EQ(flown.result.lost, 0U);
     EXPECT_THAT(ReadFile(scratch.File("run/config.toml")), HasSubstr("kind = \"kill\""));
-    const Ran same = Shell("'" MASCOT_BINARY_DIR "/orchestrator' verify '" + scratch.File("run") + "'");
+    const Ran same = Shell("'" + BuildFolder() + "/orchestrator' verify '" + scratch.File("run") + "'");
     EXPECT_EQ(same.exit_code, 0) << same.output;
     EXPECT_THAT(same.output, HasSubstr("the same, bit for bit: 101 ticks, "));
   }
@@ -285,7 +286,7 @@ class ToldAgain : public testing::TestWithParam<std::string> {
     EXPECT_EQ(FlyTold(scratch_, "run", toml, kInProcess, &swings).result.failure, "");
   }
   Ran Orchestrator(const std::string& verb, const std::string& more) const {
-    return Shell("'" MASCOT_BINARY_DIR "/orchestrator' " + verb + " '" + scratch_.File("run") + "' " + more);
+    return Shell("'" + BuildFolder() + "/orchestrator' " + verb + " '" + scratch_.File("run") + "' " + more);
   }
   const ScratchFolder scratch_;
 };

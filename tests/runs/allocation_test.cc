@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/param_name.h"
 
@@ -42,7 +43,7 @@ void WriteExperiment(const std::string& path, const std::string& more) {
       "[output]\nsave_plot = false\n[agents]\ncount = 4\nrandom = { min_m = [-9, -9, 1], max_m = [9, 9, 9] }\n" + more);
 }
 
-const std::string kPreload = "LD_PRELOAD=" MASCOT_BINARY_DIR "/tests/preload/libcount_allocations.so";
+const std::string kPreload = "LD_PRELOAD=" + test::BuildFolder() + "/tests/preload/libcount_allocations.so";
 // --- over DDS: what is allocated between two ticks of one run ---------------------------------------
 
 /// Waits until the recording of a run has become longer so many times. Each time, a chunk of 100 ticks has been
@@ -71,7 +72,7 @@ Allocations AllocationsInFlight(const std::string& experiment, int ticks) {
   WriteFile(window, "0");
   const auto count = [&](char whether) { std::fstream(window, std::ios::in | std::ios::out) << whether; };
   WriteExperiment(folder.File("a.toml"), experiment);
-  const std::string program = MASCOT_BINARY_DIR "/orchestrator";
+  const std::string program = test::BuildFolder() + "/orchestrator";
   Running up("env",
              {kPreload, "MASCOT_ALLOCATIONS=" + counts.string(), program, "up", folder.File("a.toml"), "--duration-s",
               "10000", "--out", folder.File("run")},
@@ -88,10 +89,10 @@ Allocations AllocationsInFlight(const std::string& experiment, int ticks) {
 /// An experiment and its name.
 struct Setup {
   const char* name;
-  const char* toml;
+  std::string toml;
 };
 
-void PrintTo(const Setup& setup, std::ostream* out) { *out << testing::PrintToString(std::string(setup.toml)); }
+void PrintTo(const Setup& setup, std::ostream* out) { *out << testing::PrintToString(setup.toml); }
 
 std::string NameOf(const testing::TestParamInfo<Setup>& row) { return ParamName(row.param.name); }
 
@@ -125,10 +126,9 @@ Allocations AllocationsOf(int ticks, const std::string& more) {
   const std::filesystem::path counts = folder.path() / "counts";
   std::filesystem::create_directory(counts);
   WriteExperiment(folder.File("a.toml"), more);
-  const Ran ran =
-      Shell(kPreload + " MASCOT_ALLOCATIONS=" + counts.string() + " " MASCOT_BINARY_DIR "/orchestrator up " +
-            folder.File("a.toml") + " --engine inprocess --quiet --duration-s " + std::to_string(ticks / 100) +
-            " --out " + folder.File("run"));
+  const Ran ran = Shell(kPreload + " MASCOT_ALLOCATIONS=" + counts.string() + " " + test::BuildFolder() +
+                        "/orchestrator up " + folder.File("a.toml") + " --engine inprocess --quiet --duration-s " +
+                        std::to_string(ticks / 100) + " --out " + folder.File("run"));
   EXPECT_EQ(ran.exit_code, 0) << ran.output;
   return Read(counts);
 }
@@ -156,10 +156,11 @@ INSTANTIATE_TEST_SUITE_P(
               "[physics]\nobstacles = [{ shape = 'box', position_m = [0, 0, 30], size_m = [1, 1, 1] }]\n"
               "[sensors]\nrange_m = 50.0\n"
               "[law]\nname = 'avoidance'\ngoals_m = [[9, 9, 1], [-9, 9, 1], [9, -9, 1], [-9, -9, 1]]\n"},
-        Setup{"an FMU", "[law]\nname = 'fmu'\nfile = '" MASCOT_BINARY_DIR "/tests/fmus/law_fmi3.fmu'\n"},
+        Setup{"an FMU", "[law]\nname = 'fmu'\nfile = '" + test::BuildFolder() + "/tests/fmus/law_fmi3.fmu'\n"},
         Setup{"a policy",
               "[graph]\ntopology = 'complete'\n"
-              "[law]\nname = 'policy'\nfile = '" MASCOT_SOURCE_DIR "/configs/policy.onnx'\n"},
+              "[law]\nname = 'policy'\nfile = '" +
+                  test::SourceFolder() + "/configs/policy.onnx'\n"},
         Setup{"waypoints with links of limited range",
               "[physics]\ncollisions = false\n[law]\nname = 'waypoint'\nwaypoints_m = [[1, 1, 1], [2, 2, 2]]\n"
               "[graph]\nrange_m = 5.0\n"}),

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -23,7 +24,7 @@ TEST(Crazyswarm, AScriptTakesOffFliesStreamsAndLands) {
   Up up(folder, "run", folder.File("team.toml"), {});
   ASSERT_TRUE(Until([&] { return up.Said("DDS domain "); })) << up.err();
   const std::string said = up.err().substr(up.err().find("DDS domain ") + 11);
-  Running script(MASCOT_BINARY_DIR "/fake_script", {"--domain", std::to_string(std::stoi(said)), "--nonsense"},
+  Running script(BuildFolder() + "/fake_script", {"--domain", std::to_string(std::stoi(said)), "--nonsense"},
                  folder.File("script"));
   EXPECT_EQ(script.Wait(), 0) << script.out() << script.err();
   for (const char* words :

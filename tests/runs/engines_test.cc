@@ -13,6 +13,7 @@
 #include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/formats/mcap/writer.h"
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/param_name.h"
 
@@ -25,7 +26,7 @@ using ::testing::StartsWith;
 
 std::vector<std::string> ShippedConfigs() {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs"))
+  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() + "/configs"))
     if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
@@ -67,7 +68,7 @@ TEST_P(Shipped, FliesOverDdsAsInOneProcess) {
   EXPECT_EQ(dds.Summary()["wire"]["matches_graph"], true);
   EXPECT_TRUE(inprocess.Summary()["wire"].at("matches_graph").is_null()) << "there is no wire to look at";
   EXPECT_EQ(dds.Summary()["samples"]["lost"], 0);
-  const Ran check = Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/mcapcheck.mjs' '" +
+  const Ran check = Shell("node '" + SourceFolder() + "/tests/mcapcheck/mcapcheck.mjs' '" +
                           (dds.path() / "run.mcap").string() + "' --all --strict --quiet");
   EXPECT_EQ(check.exit_code, 0) << check.output;
 }
@@ -78,8 +79,8 @@ class UpWithoutFma : public Running {
   UpWithoutFma(const ScratchFolder& folder, const std::string& config)
       : Running("env",
                 {"GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-FMA4_Usable,-AVX2,-FMA,-FMA4",
-                 std::string(MASCOT_BINARY_DIR "/orchestrator"), "up", config, "--out", folder.File("without_fma"),
-                 "--engine", "inprocess", "--set", "output.save_plot=false"},
+                 BuildFolder() + "/orchestrator", "up", config, "--out", folder.File("without_fma"), "--engine",
+                 "inprocess", "--set", "output.save_plot=false"},
                 folder.File("without_fma")),
         recording_(folder.File("without_fma/run.mcap")) {}
 
@@ -151,7 +152,7 @@ TEST(Verify, FliesOverDdsWhatOneProcessRecordedAndEndsAtTheFirstDifference) {
   Up up(folder, "run", Config("minmax"), {"--duration-s", "1", "--engine", "inprocess"});
   ASSERT_EQ(up.Wait(), 0) << up.err();
   const auto verify = [&](const std::string& recording) {
-    return Shell(MASCOT_BINARY_DIR "/orchestrator verify '" + recording + "' --engine dds");
+    return Shell(BuildFolder() + "/orchestrator verify '" + recording + "' --engine dds");
   };
   const std::string recording = folder.File("run/run.mcap"), changed = folder.File("changed.mcap");
   const Ran same = verify(recording);
@@ -234,7 +235,7 @@ topology = "ring"
 loss = 0.2
 [law]
 name = "plugin"
-library = ")" MASCOT_BINARY_DIR "/tests/plugins/libtalker.so\"\n";
+library = ")" + BuildFolder() + "/tests/plugins/libtalker.so\"\n";
 
 TEST(PluginLaw, GivesTheSameBytesInBothEnginesMessagesIncluded) {
   ScratchFolder folder;
@@ -255,8 +256,8 @@ TEST(PluginLaw, GivesTheSameBytesInBothEnginesMessagesIncluded) {
 /// Three agents with one of the FMUs of tests/fmus.
 std::string Fmus(const std::string& name) {
   return "[run]\nduration_s = 1.0\n[agents]\ncount = 3\nmodel = \"double_integrator\"\n[graph]\ntopology = \"ring\"\n"
-         "[link]\nloss = 0.2\n[law]\nname = \"fmu\"\nfile = \"" MASCOT_BINARY_DIR "/tests/fmus/" +
-         name + "\"\n";
+         "[link]\nloss = 0.2\n[law]\nname = \"fmu\"\nfile = \"" +
+         BuildFolder() + "/tests/fmus/" + name + "\"\n";
 }
 
 TEST(FmuLaw, GivesTheSameBytesInBothEngines) {
@@ -284,9 +285,8 @@ TEST(FmuLaw, ThatAProcessCanHaveOnceIsFlownInAProcessForEachAgent) {
 TEST(PluginLaw, ThatFailsInFlightEndsTheRunInBothEngines) {
   ScratchFolder folder;
   const auto fly = [&](const std::string& engine, const std::string& does) {
-    const std::string law = "law={ name = 'plugin', library = '" MASCOT_BINARY_DIR
-                            "/tests/plugins/libmirror.so', params = { from_s = 0.5, does = '" +
-                            does + "' } }";
+    const std::string law = "law={ name = 'plugin', library = '" + BuildFolder() +
+                            "/tests/plugins/libmirror.so', params = { from_s = 0.5, does = '" + does + "' } }";
     Up up(folder, engine + does, Config("leaderless"), {"--engine", engine, "--duration-s", "1", "--set", law});
     EXPECT_EQ(up.Wait(), 1);
     EXPECT_EQ(up.Summary()["exit"], 1);
@@ -317,7 +317,7 @@ TEST(Messages, ReachThoseWhoHearTheSenderTheSameInBothEngines) {
   Up muffled(folder, "muffled", folder.File("talkers.toml"), {"--engine", "inprocess", "--set", "law.messages=false"});
   ASSERT_EQ(muffled.Wait(), 0) << muffled.err();
   EXPECT_FALSE(muffled.File("states.npz") == inprocess.File("states.npz")) << "what they say matters";
-  const Ran check = Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/mcapcheck.mjs' '" +
+  const Ran check = Shell("node '" + SourceFolder() + "/tests/mcapcheck/mcapcheck.mjs' '" +
                           (dds.path() / "run.mcap").string() + "' --all --strict --quiet");
   EXPECT_EQ(check.exit_code, 0) << check.output;
 }
@@ -465,7 +465,7 @@ TEST(Engines, LoadDoesNotChangeABit) {
 
 TEST(Engines, EventsTakeEffectAtTheSameTickInBothAndAnotherFlightOfTheResolvedFileIsTheSame) {
   ScratchFolder folder;
-  const std::string config = MASCOT_SOURCE_DIR "/tests/good_configs/events.toml";
+  const std::string config = SourceFolder() + "/tests/good_configs/events.toml";
   Up inprocess(folder, "inprocess", config, {"--engine", "inprocess", "--set", "run.name=events"});
   ASSERT_EQ(inprocess.Wait(), 0) << inprocess.err();
   const std::vector<std::vector<std::string>> deliveries = {
@@ -518,10 +518,10 @@ cut = [[1, 2]]
   EXPECT_EQ(Measurements(dds), Measurements(inprocess));
   EXPECT_THAT(dds.Info(), HasSubstr("of which 42 have a row"));
   const Ran check =
-      Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/ros_types.mjs' '" + (dds.path() / "run.mcap").string() + "'");
+      Shell("node '" + SourceFolder() + "/tests/mcapcheck/ros_types.mjs' '" + (dds.path() / "run.mcap").string() + "'");
   EXPECT_EQ(check.exit_code, 0) << check.output;
   const Ran verify =
-      Shell("'" MASCOT_BINARY_DIR "/orchestrator' verify --engine dds '" + inprocess.path().string() + "'");
+      Shell("'" + BuildFolder() + "/orchestrator' verify --engine dds '" + inprocess.path().string() + "'");
   EXPECT_EQ(verify.exit_code, 0) << verify.output;
 }
 
@@ -855,7 +855,7 @@ TEST(Up, OutlivesAHangUpThatItWasToldToIgnore) {
   const ScratchFolder folder;
   Running up(
       "sh",
-      {"-c", "trap '' HUP; exec '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+      {"-c", "trap '' HUP; exec '" + BuildFolder() + "/orchestrator' up " + Config("leaderless") +
                  " --engine inprocess --duration-s 500 --set output.save_plot=false --out " + folder.File("run")},
       folder.File("up"));
   ASSERT_TRUE(Flies(up));
@@ -876,7 +876,7 @@ TEST(Up, PrintsTheSummaryAndNothingElseAsJson) {
 TEST(Up, FailsIfTheSummaryCannotBePrintedUnlessNobodyWantsIt) {
   ScratchFolder folder;
   const auto up = [&](const std::string& name, const std::string& where) {
-    const Ran ran = Shell("{ { '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+    const Ran ran = Shell("{ { '" + BuildFolder() + "/orchestrator' up " + Config("leaderless") +
                           " --engine inprocess --duration-s 0.1 --set output.save_plot=false --out " +
                           folder.File(name) + "; echo exit $? >&2; } " + where + "; }");
     EXPECT_THAT(
@@ -919,7 +919,7 @@ TEST(Up, SaysFirstWhatItIsGoingToDo) {
 TEST(Help, OfAVerbIsThatOfItsOption) {
   ScratchFolder folder;
   const auto said = [&](std::vector<std::string> words) {
-    Running run(std::string(MASCOT_BINARY_DIR) + "/orchestrator", std::move(words), folder.File("help"));
+    Running run(BuildFolder() + "/orchestrator", std::move(words), folder.File("help"));
     EXPECT_EQ(run.Wait(), 0);
     EXPECT_EQ(run.err(), "");
     return run.out();
@@ -927,7 +927,7 @@ TEST(Help, OfAVerbIsThatOfItsOption) {
   EXPECT_EQ(said({"help", "sweep"}), said({"sweep", "--help"}));
   EXPECT_EQ(said({"help"}), said({"--help"}));
   EXPECT_THAT(said({"help"}), HasSubstr("orchestrator help VERB"));
-  Running unknown(std::string(MASCOT_BINARY_DIR) + "/orchestrator", {"help", "swep"}, folder.File("unknown"));
+  Running unknown(BuildFolder() + "/orchestrator", {"help", "swep"}, folder.File("unknown"));
   EXPECT_EQ(unknown.Wait(), 2);
   EXPECT_THAT(unknown.err(), HasSubstr("error: unknown verb 'swep' (did you mean \"sweep\"?)"));
 }
@@ -935,7 +935,7 @@ TEST(Help, OfAVerbIsThatOfItsOption) {
 TEST(Up, SaysWhatIsWrongWithItsArguments) {
   ScratchFolder folder;
   auto refusal = [&](std::vector<std::string> words) {
-    Running up(std::string(MASCOT_BINARY_DIR) + "/orchestrator", std::move(words), folder.File("refusal"));
+    Running up(BuildFolder() + "/orchestrator", std::move(words), folder.File("refusal"));
     EXPECT_EQ(up.Wait(), 2);
     return up.err();
   };

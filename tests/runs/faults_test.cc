@@ -10,6 +10,7 @@
 #include "bus/wire.h"
 #include "orchestrator/engines/dds/machine/domain_lock.h"
 #include "orchestrator/formats/mcap/reader.h"
+#include "tests/support/folders.h"
 #include "tests/support/intruder.h"
 #include "tests/support/param_name.h"
 
@@ -124,9 +125,9 @@ class Orphaned : public testing::TestWithParam<Moment> {};
 
 TEST_P(Orphaned, RunsClearUpAfterAnOrchestratorThatWasKilled) {
   ScratchFolder folder;
-  const std::string program = MASCOT_BINARY_DIR "/orchestrator";
+  const std::string program = BuildFolder() + "/orchestrator";
   // It dies by its own write (tests/preload/killed_at.cc): a signal from here would come later, or too late.
-  const std::string preload = "LD_PRELOAD=" MASCOT_BINARY_DIR "/tests/preload/libkilled_at.so";
+  const std::string preload = "LD_PRELOAD=" + BuildFolder() + "/tests/preload/libkilled_at.so";
   Running up(
       "env",
       {preload, "MASCOT_KILLED=orchestrator", "MASCOT_KILLED_AT=" + GetParam().written, program, "up",
@@ -144,8 +145,8 @@ INSTANTIATE_TEST_SUITE_P(At, Orphaned,
 
 /// A command in which leaving the DDS domain never ends, for processes with the name `process`.
 std::string Hanging(const std::string& process, const std::string& command) {
-  return "MASCOT_HANGS=" + process + " LD_PRELOAD='" MASCOT_BINARY_DIR "/tests/preload/libhang_at_end.so' exec '" +
-         MASCOT_BINARY_DIR "/" + process + "' " + command;
+  return "MASCOT_HANGS=" + process + " LD_PRELOAD='" + BuildFolder() + "/tests/preload/libhang_at_end.so' exec '" +
+         BuildFolder() + "/" + process + "' " + command;
 }
 
 /// `up` for so long, with results in folder/run, whose orchestrator says so and hangs when it leaves its domain.
@@ -211,7 +212,7 @@ TEST(Faults, DamagedDatagramsEndARunInWordsAndWithResultsOrNotAtAll) {
   ScratchFolder folder;
   Up up = Endless(folder, {"--set", "network.transport=udp", "--set", "run.agent_timeout_s=0.5"});
   ASSERT_TRUE(Flies(up));
-  Running attacker(MASCOT_SOURCE_DIR "/tests/flip_bits.py", {std::to_string(DomainOf(up)), "--seed", "1"},
+  Running attacker(SourceFolder() + "/tests/flip_bits.py", {std::to_string(DomainOf(up)), "--seed", "1"},
                    folder.File("attacker"));
   const pid_t pid = up.pid();
   const auto has_ended = [&] {
@@ -556,16 +557,16 @@ TEST(Faults, AnAgentThatWaitsForParticipantsThatDoNotComeFliesAllTheSame) {
   Up up(folder, "run", Config("leaderless"),
         {"--duration-s", "0.2", "--set", "agents.override=[{id = 1, host = \"external\"}]"});
   ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 1"); }));
-  Running agent(std::string(MASCOT_BINARY_DIR) + "/agent",
-                {"--id", "1", "--domain", std::to_string(DomainOf(up)), "--awaits", "1000"}, folder.File("agent"));
+  Running agent(BuildFolder() + "/agent", {"--id", "1", "--domain", std::to_string(DomainOf(up)), "--awaits", "1000"},
+                folder.File("agent"));
   EXPECT_EQ(up.Wait(), 0) << up.err();
   EXPECT_EQ(agent.Wait(), 0) << agent.err();
 }
 
 TEST(Faults, AnAgentThatWaitsForParticipantsEndsByASignal) {
   ScratchFolder folder;
-  Running agent(std::string(MASCOT_BINARY_DIR) + "/agent",
-                {"--id", "1", "--domain", "231", "--loopback", "--awaits", "1000"}, folder.File("agent"));
+  Running agent(BuildFolder() + "/agent", {"--id", "1", "--domain", "231", "--loopback", "--awaits", "1000"},
+                folder.File("agent"));
   const std::string threads = "/proc/" + std::to_string(agent.pid()) + "/task";
   ASSERT_TRUE(Until([&] { return std::distance(std::filesystem::directory_iterator(threads), {}) > 3; }))
       << "it has joined the domain";
@@ -576,7 +577,7 @@ TEST(Faults, AnAgentThatWaitsForParticipantsEndsByASignal) {
 TEST(Faults, AFullDiskFailsTheRun) {
   ScratchFolder folder;
   for (const std::string engine : {"dds", "inprocess"}) {
-    const Ran run = Shell("ulimit -f 4000; '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+    const Ran run = Shell("ulimit -f 4000; '" + BuildFolder() + "/orchestrator' up " + Config("leaderless") +
                           " --duration-s 400 --set output.save_plot=false --set output.save_data=false --engine " +
                           engine + " --out " + folder.File(engine));
     EXPECT_EQ(run.exit_code, 1) << run.output;
@@ -589,7 +590,7 @@ TEST(Faults, AFullDiskFailsTheRun) {
 TEST(Faults, StatesThatDoNotFitOnTheDiskFailTheRun) {
   ScratchFolder folder;
   const Ran run =
-      Shell("ulimit -f 4000; '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+      Shell("ulimit -f 4000; '" + BuildFolder() + "/orchestrator' up " + Config("leaderless") +
             " --duration-s 400 --set output.save_plot=false --set 'record.topics=[]' --engine inprocess --out " +
             folder.File("run"));
   EXPECT_EQ(run.exit_code, 1) << run.output;
@@ -601,7 +602,7 @@ TEST(Faults, StatesThatDoNotFitOnTheDiskFailTheRun) {
 TEST(Faults, ALogThatCannotBeWrittenIsSaidAndTheRunGoesOn) {
   ScratchFolder folder;
   const std::string law = "def control(t, me, neighbours):\n  print('x' * 60000, flush=True)\n  return [0, 0]\n";
-  const Ran run = Shell("ulimit -f 4000; '" MASCOT_BINARY_DIR "/orchestrator' up " + Python(folder, 2, law) +
+  const Ran run = Shell("ulimit -f 4000; '" + BuildFolder() + "/orchestrator' up " + Python(folder, 2, law) +
                         " --quiet --out " + folder.File("run"));
   EXPECT_EQ(run.exit_code, 0) << run.output;
   for (const char* agent : {"agent_1", "agent_2"})
@@ -618,7 +619,7 @@ TEST(Faults, AnAgentWhoseLawHangsSaysSoWhenItIsInterrupted) {
   Up up(folder, "run", Python(folder, 2, law, "fidelity = false\n"),
         {"--set", "agents.override=[{id = 1, host = \"external\"}]", "--set", "run.agent_timeout_s=1000"});
   ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 1"); }));
-  Running agent(std::string(MASCOT_BINARY_DIR) + "/agent", {"--id", "1", "--domain", std::to_string(DomainOf(up))},
+  Running agent(BuildFolder() + "/agent", {"--id", "1", "--domain", std::to_string(DomainOf(up))},
                 folder.File("agent"));
   ASSERT_TRUE(Until([&] { return agent.Said("I hang"); })) << agent.err();
   agent.Signal(SIGINT);
@@ -630,8 +631,8 @@ TEST(Faults, ASecondServerEndsTheRun) {
   ScratchFolder folder;
   Up up = Endless(folder);
   ASSERT_TRUE(Flies(up));
-  Running twin(std::string(MASCOT_BINARY_DIR) + "/physics_server",
-               {"--loopback", "--domain", std::to_string(DomainOf(up))}, folder.File("twin"));
+  Running twin(BuildFolder() + "/physics_server", {"--loopback", "--domain", std::to_string(DomainOf(up))},
+               folder.File("twin"));
   EXPECT_EQ(up.Wait(), 1);
   EXPECT_THAT(up.err(), HasSubstr("two processes say that they are physics_server"));
 }
@@ -684,7 +685,7 @@ TEST(Faults, WhatTheServerMeasuredIsReportedWhenAnAgentDiesInTheFirstTick) {
 
 TEST(Faults, HowAProgramWasStartedDoesNotMatter) {
   ScratchFolder folder;
-  const std::string up = "'" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+  const std::string up = "'" + BuildFolder() + "/orchestrator' up " + Config("leaderless") +
                          " --duration-s 0.5 --set output.save_plot=false --out ";
   // SIGCHLD ignored, as some supervisors leave it; and without standard streams, as daemons are started.
   EXPECT_EQ(Shell("trap '' CHLD; " + up + folder.File("ignored")).exit_code, 0);
@@ -695,7 +696,7 @@ TEST(Faults, HowAProgramWasStartedDoesNotMatter) {
 
 TEST(Faults, AnAgentProgramThatIsMissingIsNamed) {
   ScratchFolder folder;
-  std::filesystem::copy(std::string(MASCOT_BINARY_DIR) + "/orchestrator", folder.File("orchestrator"));
+  std::filesystem::copy(BuildFolder() + "/orchestrator", folder.File("orchestrator"));
   const Ran run = Shell(folder.File("orchestrator") + " up " + Config("leaderless") + " --out " + folder.File("run"));
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.output,
@@ -720,7 +721,7 @@ TEST(Faults, TooLittleSharedMemoryIsRefusedInWords) {
   const std::string alone = "unshare --mount sh -c 'mount -t tmpfs -o size=2m tmpfs /dev/shm";
   if (Shell(alone + "'").exit_code != 0) GTEST_SKIP() << "mounting a /dev/shm is not allowed here";
   ScratchFolder folder;
-  const std::string up = " && \"" MASCOT_BINARY_DIR "/orchestrator\" up " + Config("leaderless") +
+  const std::string up = " && \"" + BuildFolder() + "/orchestrator\" up " + Config("leaderless") +
                          " --duration-s 0.2 --set output.save_plot=false --out " + folder.File("run");
   const Ran refused = Shell(alone + up + "'");
   EXPECT_EQ(refused.exit_code, 1);
@@ -732,7 +733,7 @@ TEST(Faults, TooLittleSharedMemoryIsRefusedInWords) {
 
 TEST(Faults, TooLittleAddressSpaceIsRefusedInWords) {
   ScratchFolder folder;
-  const Ran run = Shell("ulimit -v 204800; '" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") +
+  const Ran run = Shell("ulimit -v 204800; '" + BuildFolder() + "/orchestrator' up " + Config("leaderless") +
                         " --out " + folder.File("run"));
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.output,
@@ -761,7 +762,7 @@ TEST(Faults, ADomainInUseIsRefused) {
 
 TEST(Faults, AHostWhoseJanitorCannotStartSaysSoAndKillsNobodyElse) {
   ScratchFolder folder;
-  std::filesystem::copy_file(MASCOT_BINARY_DIR "/orchestrator", folder.File("orchestrator"));  // without its neighbours
+  std::filesystem::copy_file(BuildFolder() + "/orchestrator", folder.File("orchestrator"));  // without its neighbours
   WriteFile(folder.File("job"), R"({"kind": "job", "domain": 100, "own_memory": true, "shared_memory": 0, )"
                                 R"("silence_s": 10, "processes": []})"
                                 "\n");

@@ -10,6 +10,7 @@
 
 #include "experiment/events.h"
 #include "orchestrator/recording/indexed_rows.h"
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -69,7 +70,7 @@ class Hosts : public testing::Test {
   /// this leaves again in one process. `more`: further arguments. `meanwhile`: called once the agent has been started.
   void FlyTogether(const std::string& config, const std::vector<std::string>& more, int external_id,
                    const std::function<void()>& meanwhile = {}) {
-    const std::string bin = MASCOT_BINARY_DIR;
+    const std::string& bin = BuildFolder();
     std::vector<std::string> up_words{
         bin + "/orchestrator",
         "up",
@@ -95,7 +96,7 @@ class Hosts : public testing::Test {
 
   /// What starts agent `id` on the other host for a run that has said this.
   static std::vector<std::string> AgentWords(const std::string& said, int id) {
-    std::vector<std::string> words{std::string(MASCOT_BINARY_DIR) + "/agent", "--id", std::to_string(id), "--domain",
+    std::vector<std::string> words{BuildFolder() + "/agent", "--id", std::to_string(id), "--domain",
                                    std::to_string(std::stoi(said.substr(said.find("domain ") + 7)))};
     if (const auto at = said.find("THIS-HOST:"); at != std::string::npos)
       words.insert(words.end(), {"--discovery", "10.77.0.1:" + std::to_string(std::stoi(said.substr(at + 10)))});
@@ -108,7 +109,7 @@ class Hosts : public testing::Test {
   /// Runs a verb of the orchestrator on our host.
   Ran Orchestrator(const std::vector<std::string>& words) {
     std::string command = "ip";
-    for (const std::string& word : hosts_.Here({MASCOT_BINARY_DIR "/orchestrator"})) command += " " + word;
+    for (const std::string& word : hosts_.Here({BuildFolder() + "/orchestrator"})) command += " " + word;
     for (const std::string& word : words) command += " '" + word + "'";
     return Shell(command + " 2>&1");
   }
@@ -253,7 +254,7 @@ leader = 2
 }
 
 TEST_F(Hosts, ATeamWithAnAgentOnAnotherHostIsSteppedByActions) {
-  const std::string bin = MASCOT_BINARY_DIR, file = folder_.File("told.toml"), client = folder_.File("client.py");
+  const std::string file = folder_.File("told.toml"), client = folder_.File("client.py");
   WriteFile(file, R"(
 [run]
 duration_s = 0.3
@@ -279,7 +280,8 @@ for k in range(6):
     ask("step", ticks=5, actions=[[0.1 * k, 0, 0, 1], [0, 0.2 * k, 0, 2], None])
 )");
   const auto serve = [&](const std::string& engine) {
-    return hosts_.Here({bin + "/orchestrator", "serve", file, "--at", "127.0.0.1:0", "--once", "--engine", engine});
+    return hosts_.Here(
+        {BuildFolder() + "/orchestrator", "serve", file, "--at", "127.0.0.1:0", "--once", "--engine", engine});
   };
   const auto told = [&](const std::string& engine, const std::function<void(const Running&)>& meanwhile) {
     Running server("ip", serve(engine), folder_.File(engine));

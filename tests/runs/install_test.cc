@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -21,7 +22,7 @@ std::string Quoted(const fs::path& path) { return "'" + path.string() + "'"; }
 /// Installs this build into a temporary folder, and copies the example of docs/plugin_law.md out of the installation.
 struct Installed {
   Installed() {
-    ExpectDone(MASCOT_CMAKE " --install '" MASCOT_BINARY_DIR "' --prefix " + Quoted(prefix));
+    ExpectDone(MASCOT_CMAKE " --install '" + BuildFolder() + "' --prefix " + Quoted(prefix));
     fs::copy(prefix / "share/mascot/examples/plugin_law", example);
   }
 
@@ -58,7 +59,7 @@ void BuildByHand(const Installed& installed, const fs::path& source, const std::
 
 /// The source of the law in docs/plugin_law.md.
 std::string DocumentedLaw() {
-  const std::string text = ReadFile(MASCOT_SOURCE_DIR "/docs/plugin_law.md");
+  const std::string text = ReadFile(SourceFolder() + "/docs/plugin_law.md");
   const std::string opening = "```cpp\n";
   const auto begin = text.find(opening);
   const auto end = text.find("```\n", begin + 1);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -92,9 +93,8 @@ class Laboratory {
     const std::string port = "port" + std::to_string(host);
     Do("ip netns add " + Name(host));
     if (cable.delay_ms > 0 || cable.loss > 0) {
-      cables_.push_back(
-          std::make_unique<Piped>(fmt::format("exec {}/tests/slow_link.py {} {} {} {} {}", MASCOT_SOURCE_DIR, port,
-                                              cable.delay_ms, cable.loss, Name(0), Name(host))));
+      cables_.push_back(std::make_unique<Piped>(fmt::format("exec {}/tests/slow_link.py {} {} {} {} {}", SourceFolder(),
+                                                            port, cable.delay_ms, cable.loss, Name(0), Name(host))));
       if (cables_.back()->Line() != "ready") trouble_ = "slow_link.py does not work";
       Do("ip -n " + Name(host) + " link set " + port + " name eth0");
     } else {
@@ -190,7 +190,7 @@ class OnOtherHosts : public testing::Test {
     return folder_.File("team.toml");
   }
   std::unique_ptr<Running> Fly(const std::string& config, const std::vector<std::string>& more = {}) const {
-    const std::string program = MASCOT_BINARY_DIR "/orchestrator";
+    const std::string program = BuildFolder() + "/orchestrator";
     std::vector<std::string> words = laboratory_->Here();
     words.insert(words.end(),
                  {program, "up", config, "--out", folder_.File("run"), "--force", "--set", "output.save_plot=false"});
@@ -214,7 +214,7 @@ class OnOtherHosts : public testing::Test {
   /// Expects that nothing of the run is on any host.
   void ExpectNothingIsLeft() const {
     for (int host = 1; host <= kHosts; ++host) {
-      EXPECT_TRUE(Until([&] { return laboratory_->On(host, MASCOT_BINARY_DIR).empty(); })) << "on lab" << host;
+      EXPECT_TRUE(Until([&] { return laboratory_->On(host, BuildFolder()).empty(); })) << "on lab" << host;
       EXPECT_TRUE(Until([&] { return laboratory_->SharedMemory(host).empty(); })) << laboratory_->SharedMemory(host);
     }
   }
@@ -224,7 +224,7 @@ class OnOtherHosts : public testing::Test {
 };
 
 TEST(Host, GreetsWhateverItsEnvironmentHolds) {
-  const Ran ran = Shell("SSH_CONNECTION=\"$(printf '\\377')\" '" MASCOT_BINARY_DIR "/orchestrator' host");
+  const Ran ran = Shell("SSH_CONNECTION=\"$(printf '\\377')\" '" + BuildFolder() + "/orchestrator' host");
   EXPECT_THAT(ran.output, HasSubstr("{\"kind\":\"hello\",")) << "and then the end of its input";
   EXPECT_THAT(ran.output, HasSubstr("\"seen_from\":\"\uFFFD\""));
 }
@@ -284,7 +284,7 @@ TEST_F(OnOtherHosts, EventsByHandReachThem) {
   const auto up = Fly(config, {"--set", "run.pace=2"});
   ASSERT_TRUE(Flies(*up)) << up->err();
   const auto send = [&](const std::string& words) {
-    return Shell("ip netns exec " + laboratory_->Here().back() + " " MASCOT_BINARY_DIR "/orchestrator send --run " +
+    return Shell("ip netns exec " + laboratory_->Here().back() + " " + BuildFolder() + "/orchestrator send --run " +
                  folder_.File("run") + " " + words);
   };
   EXPECT_EQ(send("--agents 3 set law.p_gain=0.4").exit_code, 0);
@@ -295,7 +295,7 @@ TEST_F(OnOtherHosts, EventsByHandReachThem) {
 
 TEST_F(OnOtherHosts, AVehicleIsFlownFromTheHostOfItsAgent) {
   Connect();
-  std::vector<std::string> on_lab1{"netns", "exec", Laboratory::Name(1), MASCOT_BINARY_DIR "/fake_px4"};
+  std::vector<std::string> on_lab1{"netns", "exec", Laboratory::Name(1), BuildFolder() + "/fake_px4"};
   on_lab1.insert(on_lab1.end(), {"--namespace", "px4_1", "--system-id", "2", "--domain", "100"});
   Running px4("ip", on_lab1, folder_.File("px4"));
   WriteFile(folder_.File("team.toml"),
@@ -354,7 +354,7 @@ TEST_P(HostsThatAreGone, AreLossesOfTheirAgentsThatFlyAgain) {
   for (const pid_t pid : laboratory_->On(0, "orchestrator up")) SignalTo(pid, SIGINT);
   EXPECT_EQ(up->Wait(), 130) << up->err();
   EXPECT_EQ(CountOf("kind = \"kill\"", ReadFile(folder_.File("run/config.toml"))), 2);
-  const Ran verified = Shell("'" MASCOT_BINARY_DIR "/orchestrator' verify '" + folder_.File("run") + "' 2>&1");
+  const Ran verified = Shell("'" + BuildFolder() + "/orchestrator' verify '" + folder_.File("run") + "' 2>&1");
   EXPECT_THAT(verified.output, HasSubstr("the same, bit for bit"));
   ExpectNothingIsLeft();
 }
@@ -472,10 +472,10 @@ TEST_F(OnOtherHosts, AreWarnedOfIfTheyDoNotEnd) {
 
 TEST(HostsPage, HasAnExperimentThatIsOne) {
   const ScratchFolder folder;
-  const std::string page = ReadFile(MASCOT_SOURCE_DIR "/docs/hosts.md"), begin = "```toml\n";
+  const std::string page = ReadFile(SourceFolder() + "/docs/hosts.md"), begin = "```toml\n";
   const auto at = page.find(begin) + begin.size();
   WriteFile(folder.File("thirty.toml"), page.substr(at, page.find("```", at) - at));
-  const Ran ran = Shell("'" MASCOT_BINARY_DIR "/orchestrator' check " + folder.File("thirty.toml"));
+  const Ran ran = Shell("'" + BuildFolder() + "/orchestrator' check " + folder.File("thirty.toml"));
   EXPECT_EQ(ran.exit_code, 0) << ran.output;
 }
 
@@ -483,7 +483,7 @@ TEST(Slurm, IsExpectedAroundARunOnItsNodes) {
   const ScratchFolder folder;
   WriteFile(folder.File("two.toml"), "[run]\nduration_s = 1.0\n[agents]\ncount = 2\n[law]\nname = 'consensus'\n");
   const auto refusal = [&](const std::string& words) {
-    const Ran ran = Shell("env -u SLURM_JOB_ID '" MASCOT_BINARY_DIR "/orchestrator' up " + folder.File("two.toml") +
+    const Ran ran = Shell("env -u SLURM_JOB_ID '" + BuildFolder() + "/orchestrator' up " + folder.File("two.toml") +
                           " --slurm --out " + folder.File("run") + " " + words);
     EXPECT_EQ(ran.exit_code, 2);
     EXPECT_FALSE(std::filesystem::exists(folder.File("run")));
@@ -502,9 +502,9 @@ TEST(Slurm, WhatScontrolTellsIsReadAsNamesOfNodes) {
   const auto told = [&](const std::string& script) {
     WriteFile(folder.File("scontrol"), "#!/bin/sh\n" + script + "\n");
     std::filesystem::permissions(folder.File("scontrol"), std::filesystem::perms::owner_all);
-    const Ran ran = Shell("env SLURM_JOB_ID=1 SLURM_JOB_NODELIST=n PATH=" + folder.path().string() +
-                          ":$PATH '" MASCOT_BINARY_DIR "/orchestrator' up " + folder.File("two.toml") +
-                          " --slurm --out " + folder.File("run"));
+    const Ran ran =
+        Shell("env SLURM_JOB_ID=1 SLURM_JOB_NODELIST=n PATH=" + folder.path().string() + ":$PATH '" + BuildFolder() +
+              "/orchestrator' up " + folder.File("two.toml") + " --slurm --out " + folder.File("run"));
     EXPECT_EQ(ran.exit_code, 1) << script;
     EXPECT_FALSE(std::filesystem::exists(folder.File("run")));
     return ran.output;

@@ -1,6 +1,7 @@
 // Files of a law, law.data and FMUs, in whole runs: over DDS and in one process, again from a recording, after a kill.
 #include <gmock/gmock.h>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -31,7 +32,7 @@ class RunWithData : public testing::Test {
                   first + "\n    return W[int(t * 1e6)] / 300, W.sum() % 7 / 10, me.random.normal()\n'''\n");
   }
   Ran Orchestrator(const std::string& words) const {
-    return Shell("cd '" + scratch_.path().string() + "' && '" MASCOT_BINARY_DIR "/orchestrator' " + words);
+    return Shell("cd '" + scratch_.path().string() + "' && '" + BuildFolder() + "/orchestrator' " + words);
   }
   bool IsSwept() const { return fs::is_empty(temporary_); }
 
@@ -75,8 +76,8 @@ TEST_F(RunWithData, LeavesNoCopiesWhenProcessesAreKilled) {
 TEST_F(RunWithData, LeavesNoFilesOfAnFmu) {
   WriteFile(scratch_.File("fmu.toml"),
             "[run]\nduration_s = 0.5\n[agents]\ncount = 3\nmodel = 'double_integrator'\n[graph]\ntopology = 'ring'\n"
-            "[output]\nsave_plot = false\n[law]\nname = 'fmu'\nfile = '" MASCOT_BINARY_DIR
-            "/tests/fmus/law_fmi2.fmu'\n");
+            "[output]\nsave_plot = false\n[law]\nname = 'fmu'\nfile = '" +
+                BuildFolder() + "/tests/fmus/law_fmi2.fmu'\n");
   for (const char* words :
        {"check fmu.toml", "up fmu.toml --engine inprocess --quiet --out one", "up fmu.toml --quiet --out dds",
         "sweep fmu.toml --set run.seed=1,2 --no-plot --quiet --out s.csv", "verify one"}) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/param_name.h"
 
@@ -30,7 +31,7 @@ std::string At(const std::string& at_s, const std::string& event) {
 
 /// What `verify` says of a run.
 Ran Verified(const Up& up, const std::string& more = "") {
-  return Shell("'" MASCOT_BINARY_DIR "/orchestrator' verify '" + up.path().string() + "' " + more);
+  return Shell("'" + BuildFolder() + "/orchestrator' verify '" + up.path().string() + "' " + more);
 }
 
 /// How the agents are spread over processes, and what they hear by.
@@ -268,7 +269,7 @@ TEST(Losses, ComeByHandToo) {
   Up up(folder, "run", folder.File("endless.toml"), {"--engine", "dds"});
   ASSERT_TRUE(Flies(up));
   const auto send = [&up](const std::string& words) {
-    return Shell("'" MASCOT_BINARY_DIR "/orchestrator' send --run '" + up.path().string() + "' " + words + " 2>&1")
+    return Shell("'" + BuildFolder() + "/orchestrator' send --run '" + up.path().string() + "' " + words + " 2>&1")
         .output;
   };
   EXPECT_THAT(send("fault 3 kill"), testing::StartsWith("takes effect at tick "));
@@ -282,7 +283,7 @@ TEST(Losses, ComeByHandToo) {
   EXPECT_THAT(send("restart 7"), HasSubstr("event by hand: restart: expected an integer in [1, 5], got 7"));
   EXPECT_THAT(send("pace 0"), HasSubstr("as fast as it goes"));
   const auto tick = [&up] {
-    for (const auto& run : nlohmann::json::parse(Shell("'" MASCOT_BINARY_DIR "/orchestrator' ps --json").output))
+    for (const auto& run : nlohmann::json::parse(Shell("'" + BuildFolder() + "/orchestrator' ps --json").output))
       if (run.value("process", 0) == up.pid() && run["tick"].is_number()) return run["tick"].get<std::int64_t>();
     return std::int64_t{-1};
   };

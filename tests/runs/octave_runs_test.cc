@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -109,7 +110,7 @@ TEST(OctaveRuns, LeaveNoOctaveBehindWhenTheOrchestratorOrTheAgentIsKilled) {
 TEST(OctaveRuns, AreSweptByWorkers) {
   const ScratchFolder folder;
   const std::string file = OctaveRun(folder, kTalks);
-  const Ran sweep = Shell("'" MASCOT_BINARY_DIR "/orchestrator' sweep '" + file +
+  const Ran sweep = Shell("'" + BuildFolder() + "/orchestrator' sweep '" + file +
                           "' --seeds 1..4 --jobs 2 --no-plot --out '" + folder.File("sweep.csv") + "' 2>&1");
   EXPECT_EQ(sweep.exit_code, 0) << sweep.output;
   EXPECT_EQ(CountOf("\n", ReadFile(folder.File("sweep.csv"))), 5U);

@@ -8,6 +8,7 @@
 
 #include "bus/wire.h"
 #include "orchestrator/recording/recording.h"
+#include "tests/support/folders.h"
 #include "tests/support/intruder.h"
 #include "tests/support/param_name.h"
 
@@ -177,9 +178,9 @@ TEST_P(PlainIdl, ReadsWholeTicksAsRecorded) {
 
 INSTANTIATE_TEST_SUITE_P(Generators, PlainIdl,
                          testing::Values(PlainReader{"fastddsgen",
-                                                     MASCOT_BINARY_DIR "/fastdds_plain",
-                                                     {MASCOT_SOURCE_DIR "/idl/profiles/fastdds.xml"}},
-                                         PlainReader{"idlc", MASCOT_BINARY_DIR "/cyclone_plain", {}}),
+                                                     BuildFolder() + "/fastdds_plain",
+                                                     {SourceFolder() + "/idl/profiles/fastdds.xml"}},
+                                         PlainReader{"idlc", BuildFolder() + "/cyclone_plain", {}}),
                          NamedAsPrinted<PlainReader>);
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "idl/schemas.h"
 #include "orchestrator/recording/recording.h"
 #include "orchestrator/recording/row_codec.h"
+#include "tests/support/folders.h"
 #include "tests/support/intruder.h"
 
 namespace mascot::test {
@@ -17,7 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-const std::string kProgram = MASCOT_BINARY_DIR "/cyclone_rviz";
+const std::string kProgram = BuildFolder() + "/cyclone_rviz";
 const std::vector<std::string> kOn = {"--set", "network.ros_view=true"};
 
 /// Reads /tf and /scene as RViz2 does.

@@ -9,6 +9,7 @@
 #include "agent/laws/laws.h"
 #include "bus/wire.h"
 #include "orchestrator/engines/dds/credentials.h"
+#include "tests/support/folders.h"
 #include "tests/support/intruder.h"
 #include "tests/support/param_name.h"
 
@@ -135,7 +136,7 @@ TEST_F(Secured, AStrangerHearsNothingAndIsNotHeard) {
 }
 
 TEST_F(Secured, AStrangerOfAnotherVendorHearsNothingAndIsNotHeard) {
-  const std::string writer = MASCOT_BINARY_DIR "/cyclone_note", reader = MASCOT_BINARY_DIR "/cyclone_rviz";
+  const std::string writer = BuildFolder() + "/cyclone_note", reader = BuildFolder() + "/cyclone_rviz";
   if (!std::filesystem::exists(writer)) GTEST_SKIP() << "built without cyclonedds-dev: run scripts/setup --test";
   Up up = Start("run", Path("duration_s = 3.0\npace = 1.0"), {"--set", "network.delivery=topics"});
   ASSERT_TRUE(Until([&] { return up.Said("domain "); }));
@@ -150,8 +151,9 @@ TEST_F(Secured, AStrangerOfAnotherVendorHearsNothingAndIsNotHeard) {
 TEST_F(Secured, ALawThatOpensASecondParticipantHearsNothing) {
   Up up = Start("run",
                 "[run]\nduration_s = 3.0\npace = 1.0\n[agents]\ncount = 4\nmodel = 'double_integrator'\n[graph]\n"
-                "topology = 'path'\n[law]\nname = 'plugin'\nlibrary = '" MASCOT_BINARY_DIR
-                "/tests/plugins/libeavesdropper.so'\nparams = { topic = 'agent_4/state', type = 'AgentState' }\n",
+                "topology = 'path'\n[law]\nname = 'plugin'\nlibrary = '" +
+                    BuildFolder() +
+                    "/tests/plugins/libeavesdropper.so'\nparams = { topic = 'agent_4/state', type = 'AgentState' }\n",
                 {"--set", "network.delivery=topics"});
   EXPECT_EQ(up.Wait(), 0) << up.err();
   const std::string log = up.File("logs/agent_1.log");
@@ -164,12 +166,12 @@ TEST_F(Secured, ForgedDatagramsChangeNoSignedSample) {
   Up up = Start("run", Path("duration_s = 100000.0\nagent_timeout_s = 2.0"),
                 {"--set", "network.protection=sign", "--set", "network.transport=udp"});
   ASSERT_TRUE(Flies(up)) << up.err();
-  const Running attacker(MASCOT_SOURCE_DIR "/tests/flip_bits.py", {std::to_string(DomainOf(up)), "--seed", "1"},
+  const Running attacker(SourceFolder() + "/tests/flip_bits.py", {std::to_string(DomainOf(up)), "--seed", "1"},
                          folder_.File("attacker"));
   ASSERT_TRUE(Until([&] { return up.IsOver() || attacker.Said("1000 datagrams forged"); })) << attacker.err();
   up.Signal(SIGINT);  // in case it still flies
   EXPECT_THAT(up.Wait(), testing::AnyOf(1, 130)) << up.err();
-  const Ran verified = Shell("'" MASCOT_BINARY_DIR "/orchestrator' verify '" + up.path().string() + "' 2>&1");
+  const Ran verified = Shell("'" + BuildFolder() + "/orchestrator' verify '" + up.path().string() + "' 2>&1");
   EXPECT_THAT(verified.output, HasSubstr("the same, bit for bit")) << up.err();
   EXPECT_THAT(KeyFiles(), IsEmpty());
 }
@@ -196,7 +198,7 @@ class ByHand : public Secured {
     std::vector<std::string> words{"--id",          "4",        "--loopback", "--domain", std::to_string(DomainOf(up)),
                                    "--credentials", credentials};
     words.insert(words.end(), more.begin(), more.end());
-    return Running(MASCOT_BINARY_DIR "/agent", words, folder_.File(name));
+    return Running(BuildFolder() + "/agent", words, folder_.File(name));
   }
 };
 
@@ -235,7 +237,7 @@ TEST_F(ByHand, WrongCredentialsAreRefusedInWords) {
   const auto refusal = [&](const std::string& id, const std::string& text, ::mode_t mode) {
     WriteFile(copy, text);
     ::chmod(copy.c_str(), mode);
-    Running agent(MASCOT_BINARY_DIR "/agent",
+    Running agent(BuildFolder() + "/agent",
                   {"--id", id, "--loopback", "--domain", std::to_string(DomainOf(up)), "--credentials", copy},
                   folder_.File("refused"));
     EXPECT_EQ(agent.Wait(), 2);
@@ -255,7 +257,7 @@ TEST_F(ByHand, AnotherAuthorityIsNobody) {
   const std::string file = folder_.File("foreign.toml");
   WriteFile(file, ToText(foreign.Issue("agent_3", 1).credentials));
   ::chmod(file.c_str(), 0600);
-  const Running thief(MASCOT_BINARY_DIR "/thief",
+  const Running thief(BuildFolder() + "/thief",
                       {file, std::to_string(DomainOf(up)), "/agent_2/state", "/agent_4/state", "/clock"},
                       folder_.File("thief"));
   EXPECT_EQ(up.Wait(), 0) << up.err();
@@ -270,7 +272,7 @@ TEST_F(ByHand, AStolenCertificateReadsNoMoreThanItsAgentMay) {
   const Running agent = Agent(up, credentials);
   ASSERT_TRUE(Flies(up)) << up.err() << agent.err();
   const std::vector<std::string> words{credentials, std::to_string(DomainOf(up)), "/agent_1/state", "/agent_3/state"};
-  const Running honest(MASCOT_BINARY_DIR "/thief", words, folder_.File("honest"));
+  const Running honest(BuildFolder() + "/thief", words, folder_.File("honest"));
   EXPECT_TRUE(Until([&] { return honest.Said("hears /agent_3/state"); })) << honest.err();
   EXPECT_TRUE(honest.Said("refused: Fast DDS refused to make the reader for /agent_1/state")) << honest.err();
   EXPECT_FALSE(up.IsOver()) << "it reads what agent 4 may: " << up.err();
@@ -283,8 +285,8 @@ TEST_F(ByHand, WhoBypassesTheChecksOfTheLibraryGetsNoSampleAndIsNamed) {
   const std::string credentials = CredentialsOf(up);
   const Running agent = Agent(up, credentials);
   ASSERT_TRUE(Flies(up)) << up.err() << agent.err();
-  setenv("LD_PRELOAD", MASCOT_BINARY_DIR "/tests/preload/libunchecked.so", 1);
-  const Running thief(MASCOT_BINARY_DIR "/thief",
+  setenv("LD_PRELOAD", (BuildFolder() + "/tests/preload/libunchecked.so").c_str(), 1);
+  const Running thief(BuildFolder() + "/thief",
                       {credentials, std::to_string(DomainOf(up)), "/agent_3/state", "/agent_1/state", "/agent_2/state"},
                       folder_.File("thief"));
   unsetenv("LD_PRELOAD");
@@ -304,7 +306,7 @@ TEST_F(ByHand, AnAgentMayRefuseToRunCode) {
                 {"--set", "agents.override=[{id = 2, host = \"external\"}]"});
   const std::string credentials = CredentialsOf(up);
   Running agent(
-      MASCOT_BINARY_DIR "/agent",
+      BuildFolder() + "/agent",
       {"--id", "2", "--loopback", "--domain", std::to_string(DomainOf(up)), "--credentials", credentials, "--no-code"},
       folder_.File("agent"));
   EXPECT_EQ(agent.Wait(), 1);

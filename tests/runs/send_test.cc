@@ -5,6 +5,7 @@
 #include <random>
 #include <thread>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -35,7 +36,7 @@ at_s = 1.0
 set = { "law.p_gain" = 0.4 }
 )";
 
-Ran Orchestrator(const std::string& words) { return Shell("'" MASCOT_BINARY_DIR "/orchestrator' " + words + " 2>&1"); }
+Ran Orchestrator(const std::string& words) { return Shell("'" + BuildFolder() + "/orchestrator' " + words + " 2>&1"); }
 
 /// A run of the file above that has begun.
 class SteeredRun : public Up {
@@ -160,13 +161,13 @@ TEST(Send, TheConfigOfAStoppedRunRepeatsIt) {
   EXPECT_EQ(run.Wait(), 0) << run.err();
   const std::int64_t ticks = run.Summary()["ticks"];
   const std::string config = (run.path() / "config.toml").string(), again = folder.File("again");
-  const Ran repeated = Shell("'" MASCOT_BINARY_DIR "/orchestrator' up '" + config +
+  const Ran repeated = Shell("'" + BuildFolder() + "/orchestrator' up '" + config +
                              "' --engine inprocess --quiet --out '" + again + "' --set output.save_plot=false");
   ASSERT_EQ(repeated.exit_code, 0) << repeated.output;
   EXPECT_EQ(nlohmann::json::parse(ReadFile(again + "/summary.json"))["ticks"], ticks);
   EXPECT_EQ(ReadFile(again + "/states.npz"), ReadFile((run.path() / "states.npz").string()));
   for (const std::string& path : {run.path().string(), again}) {
-    const Ran verified = Shell("'" MASCOT_BINARY_DIR "/orchestrator' verify '" + path + "'");
+    const Ran verified = Shell("'" + BuildFolder() + "/orchestrator' verify '" + path + "'");
     EXPECT_EQ(verified.exit_code, 0) << verified.output;
   }
 }

@@ -10,6 +10,7 @@
 #include "bus/wire.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "tests/experiment/bad_config.h"
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/param_name.h"
 
@@ -252,7 +253,7 @@ TEST(Published, FliesTheSetUpOfThePublishedTestbed) {
 
 TEST(Check, SaysWhenAgentsShouldShareProcesses) {
   const auto check = [](const std::string& sets) {
-    return Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") +
+    return Shell(BuildFolder() + "/orchestrator check " + Config("leaderless") +
                  " --set 'agents.random.max_m=[10, 10, 60]' " + sets)
         .output;
   };
@@ -268,7 +269,7 @@ TEST(Check, SaysWhenAgentsShouldShareProcesses) {
 TEST(Summary, OfAFlightOfOneTickHasNoShareOfNothing) {
   const ScratchFolder folder;
   const Ran run =
-      Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator up " + Config("leaderless") +
+      Shell(BuildFolder() + "/orchestrator up " + Config("leaderless") +
             " --engine inprocess --duration-s 0.01 --set output.save_plot=false --out " + folder.File("run"));
   EXPECT_EQ(run.exit_code, 0) << run.output;
   EXPECT_THAT(run.output, testing::ContainsRegex("fidelity       [0-9.e-]+ m rms from ideal double integrators, while "
@@ -278,9 +279,9 @@ TEST(Summary, OfAFlightOfOneTickHasNoShareOfNothing) {
 TEST(Check, SaysAboutHowLargeTheFilesWillBe) {
   const ScratchFolder folder;
   for (const std::string config : {"leaderless", "coverage", "flocking"}) {
-    const Ran checked = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check --json " + Config(config));
+    const Ran checked = Shell(BuildFolder() + "/orchestrator check --json " + Config(config));
     const double said = nlohmann::json::parse(checked.output)["files_bytes"];
-    const Ran run = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator up " + Config(config) +
+    const Ran run = Shell(BuildFolder() + "/orchestrator up " + Config(config) +
                           " --engine inprocess --quiet --set output.save_plot=false --out " + folder.File(config));
     ASSERT_EQ(run.exit_code, 0) << run.output;
     const auto size = [&](const char* name) {
@@ -293,7 +294,7 @@ TEST(Check, SaysAboutHowLargeTheFilesWillBe) {
 }
 
 TEST(Check, ShowsTheLayoutOfWhatAgentsOfAPolicyPerceive) {
-  const std::string check = std::string(MASCOT_BINARY_DIR) + "/orchestrator check ";
+  const std::string check = BuildFolder() + "/orchestrator check ";
   const std::string layout =
       "mascot observation 1: own p 3, v 3, attitude 4; 3 x (p 3, v 3, weight, heard, age, message 0)";
   EXPECT_THAT(
@@ -309,14 +310,14 @@ TEST(Check, ShowsTheLayoutOfWhatAgentsOfAPolicyPerceive) {
   EXPECT_EQ(json[0]["names"][10], "neighbour[0].p.x");
   EXPECT_EQ(nlohmann::json::parse(Shell(check + "--json " + Config("leaderless")).output)["observations"],
             nlohmann::json::array());
-  const std::string later =
-      "--set 'law.schedule=[{ at_s = 5.0, name = \"policy\", file = \"" MASCOT_SOURCE_DIR "/configs/policy.onnx\" }]' ";
+  const std::string later = "--set 'law.schedule=[{ at_s = 5.0, name = \"policy\", file = \"" + SourceFolder() +
+                            "/configs/policy.onnx\" }]' ";
   EXPECT_THAT(Shell(check + later + Config("leaderless")).output,
               testing::HasSubstr("\n  from 5 s       policy, no leader, axes xy\n  observation    37 numbers"));
 }
 
 TEST(Check, SaysWhatSurvivesTheFaultsOfAnExperiment) {
-  const std::string check = std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("faults");
+  const std::string check = BuildFolder() + "/orchestrator check " + Config("faults");
   const Ran said = Shell(check);
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_THAT(said.output, testing::HasSubstr("\n  losses         any one agent may be lost\n"));
@@ -353,18 +354,17 @@ TEST(Check, SaysWhatSurvivesTheFaultsOfAnExperiment) {
 }
 
 TEST(Check, WarnsWhenTheFirstCommandWouldSaturate) {
-  const Ran run =
-      Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") + " --set law.p_gain=1.0");
+  const Ran run = Shell(BuildFolder() + "/orchestrator check " + Config("leaderless") + " --set law.p_gain=1.0");
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.output, testing::HasSubstr("control.max_acceleration_m_per_s2"));
-  const Ran quiet = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless"));
+  const Ran quiet = Shell(BuildFolder() + "/orchestrator check " + Config("leaderless"));
   EXPECT_THAT(quiet.output, testing::Not(testing::HasSubstr("warning")));
 }
 
 TEST(Check, PredictsFiniteValuesForEveryShippedExperiment) {
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(MASCOT_SOURCE_DIR "/configs")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(SourceFolder() + "/configs")) {
     if (entry.path().extension() != ".toml") continue;
-    const Ran run = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check --json " + entry.path().string());
+    const Ran run = Shell(BuildFolder() + "/orchestrator check --json " + entry.path().string());
     ASSERT_EQ(run.exit_code, 0) << entry.path();
     const auto check = nlohmann::json::parse(run.output);
     const auto& predicted = check["predicted"];
@@ -391,8 +391,7 @@ TEST(Check, PredictsFiniteValuesForEveryShippedExperiment) {
 // --- bad configurations ---------------------------------------------------------------------------------
 
 TEST(Check, WarnsWhenTheRunIsTooShort) {
-  const Ran run = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator check " + Config("leaderless") +
-                        " --set run.duration_s=10.0");
+  const Ran run = Shell(BuildFolder() + "/orchestrator check " + Config("leaderless") + " --set run.duration_s=10.0");
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(
       run.output,
@@ -400,13 +399,13 @@ TEST(Check, WarnsWhenTheRunIsTooShort) {
 }
 
 TEST(BadConfig, StartsNothingAndWritesNothing) {
-  for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/tests/bad_configs")) {
+  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() + "/tests/bad_configs")) {
     if (entry.path().extension() != ".toml") continue;
     ScratchFolder folder;
     const std::string path = entry.path().string();
     std::string expected = ReadFile(std::filesystem::path(entry.path()).replace_extension(".expected").string());
     const std::string out = folder.File("out");
-    Running up(std::string(MASCOT_BINARY_DIR) + "/orchestrator", {"up", path, "--out", out}, folder.File("up"));
+    Running up(BuildFolder() + "/orchestrator", {"up", path, "--out", out}, folder.File("up"));
     EXPECT_EQ(up.Wait(), 2) << path;
     std::string got;
     std::istringstream lines(up.err());

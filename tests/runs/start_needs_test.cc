@@ -2,6 +2,7 @@
 // programs.
 #include <gmock/gmock.h>
 
+#include "tests/support/folders.h"
 #include "tests/support/intruder.h"
 
 namespace mascot::test {
@@ -11,8 +12,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kOrchestratorProgram = "'" MASCOT_BINARY_DIR "/orchestrator'";
-constexpr const char* kAgentProgram = "'" MASCOT_BINARY_DIR "/agent'";
+const std::string kOrchestratorProgram = "'" + BuildFolder() + "/orchestrator'";
+const std::string kAgentProgram = "'" + BuildFolder() + "/agent'";
 
 /// `up` for a fifth of a second; `before`: words in front of it.
 Ran ShortRun(const ScratchFolder& folder, const std::string& before, const std::string& more = "") {
@@ -35,13 +36,12 @@ TEST(StartNeeds, TheLoopbackInterfaceThatIsDownIsNamedBeforeTheStart) {
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.output, AllOf(HasSubstr(words), AsksNoWrongQuestion(), Not(HasSubstr("DDS domain"))));
   EXPECT_THAT(ReadFile(folder.File("run/summary.json")), HasSubstr("lo is down"));
-  for (const std::string& by_hand :
-       {kAgentProgram + std::string(" --id 1 "), "'" MASCOT_BINARY_DIR "/physics_server' " + std::string()}) {
+  for (const std::string& by_hand : {kAgentProgram + " --id 1 ", "'" + BuildFolder() + "/physics_server' "}) {
     const Ran process = Shell("unshare -n " + by_hand + "--domain 90 --loopback --wait-s 20");
     EXPECT_EQ(process.exit_code, 1);
     EXPECT_THAT(process.output, HasSubstr(words));
   }
-  EXPECT_THAT(Shell(std::string("unshare -n ") + kAgentProgram + " --id 1 --domain 90 --wait-s 20").output,
+  EXPECT_THAT(Shell("unshare -n " + kAgentProgram + " --id 1 --domain 90 --wait-s 20").output,
               HasSubstr("error: no network interface of this machine that is up has an IPv4 address, not even lo\n"));
 }
 

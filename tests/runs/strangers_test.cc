@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "bus/wire.h"
+#include "tests/support/folders.h"
 #include "tests/support/intruder.h"
 #include "tests/support/param_name.h"
 
@@ -33,7 +34,7 @@ class Strangers : public testing::Test {
     WriteFile(folder_.File("endless.toml"),
               "[run]\nduration_s = 100000.0\n[agents]\ncount = 4\nmodel = 'double_integrator'\n[graph]\n"
               "topology = 'path'\n[output]\nsave_plot = false\nfidelity = false\n[law]\nname = 'plugin'\nlibrary = '" +
-                  std::string(MASCOT_BINARY_DIR) + "/tests/plugins/lib" + law + ".so'\n" +
+                  BuildFolder() + "/tests/plugins/lib" + law + ".so'\n" +
                   (law == "talker" ? "params = { words = 0 }\n" : ""));
     return Up(folder_, "run", folder_.File("endless.toml"), more);
   }
@@ -167,7 +168,7 @@ TEST_F(Strangers, ALieBeforeTheStartIsNotBelievedEither) {
 }
 
 TEST_F(Strangers, OneOfAnotherVendorIsNamedByItsProcess) {
-  const std::string program = MASCOT_BINARY_DIR "/cyclone_note";
+  const std::string program = BuildFolder() + "/cyclone_note";
   if (!std::filesystem::exists(program)) GTEST_SKIP() << "built without cyclonedds-dev: run scripts/setup --test";
   Up up = Endless();
   ASSERT_TRUE(Flies(up));
@@ -276,9 +277,9 @@ TEST_F(Strangers, ThePlaceOfAnAgentStartedByHandIsTheFirstOnes) {
   Up up = Endless({"--set", "agents.override=[{id = 2, host = \"external\"}]"});
   ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 2"); }));
   const std::vector<std::string> words{"--id", "2", "--loopback", "--domain", std::to_string(DomainOf(up))};
-  Running first(MASCOT_BINARY_DIR "/agent", words, folder_.File("first"));
+  Running first(BuildFolder() + "/agent", words, folder_.File("first"));
   ASSERT_TRUE(Flies(up)) << up.err() << first.err();
-  Running second(MASCOT_BINARY_DIR "/agent", words, folder_.File("second"));
+  Running second(BuildFolder() + "/agent", words, folder_.File("second"));
   EXPECT_EQ(second.Wait(), 2);
   EXPECT_EQ(second.err(),
             "error: --id 2: expected no agent, because the run waits for none, got one that is there already\n");
@@ -289,7 +290,7 @@ TEST_F(Strangers, AnAgentByHandThatTheRunDoesNotWaitForIsNotHeard) {
   Up up = Endless({"--set", "agents.override=[{id = 2, host = \"external\"},{id = 3, host = \"external\"}]"});
   ASSERT_TRUE(Until([&] { return up.Said("waiting for: agent --id 3"); }));
   const auto refusal = [&](const std::string& id) {
-    Running agent(MASCOT_BINARY_DIR "/agent", {"--id", id, "--loopback", "--domain", std::to_string(DomainOf(up))},
+    Running agent(BuildFolder() + "/agent", {"--id", id, "--loopback", "--domain", std::to_string(DomainOf(up))},
                   folder_.File("agent" + id));
     EXPECT_EQ(agent.Wait(), 2);
     return agent.err();
@@ -310,12 +311,12 @@ TEST_F(Strangers, ThePlaceOfAnAgentThatLeftBeforeTheStartIsFree) {
   const auto words = [&](const char* id) {
     return std::vector<std::string>{"--id", id, "--loopback", "--domain", std::to_string(DomainOf(up))};
   };
-  Running first(MASCOT_BINARY_DIR "/agent", words("2"), folder_.File("first"));
+  Running first(BuildFolder() + "/agent", words("2"), folder_.File("first"));
   ASSERT_TRUE(Until([&] { return first.Said("hears 1 3"); })) << first.err();
   first.Signal(SIGINT);
   EXPECT_EQ(first.Wait(), 130);
-  Running second(MASCOT_BINARY_DIR "/agent", words("2"), folder_.File("second"));
-  Running third(MASCOT_BINARY_DIR "/agent", words("3"), folder_.File("third"));
+  Running second(BuildFolder() + "/agent", words("2"), folder_.File("second"));
+  Running third(BuildFolder() + "/agent", words("3"), folder_.File("third"));
   EXPECT_EQ(up.Wait(), 0) << up.err() << second.err() << third.err();
 }
 

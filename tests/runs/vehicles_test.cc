@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/fakes.h"
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -40,7 +41,7 @@ class Vehicles : public ::testing::Test {
   Up Fly(const std::string& team, const std::vector<std::string>& more = {"--go"}) {
     return Up(folder_, "run", team, more);
   }
-  static Ran Orchestrator(const std::string& words) { return Shell("'" MASCOT_BINARY_DIR "/orchestrator' " + words); }
+  static Ran Orchestrator(const std::string& words) { return Shell("'" + BuildFolder() + "/orchestrator' " + words); }
   Ran Check(const std::string& team) { return Orchestrator("check '" + team + "' --vehicles"); }
 
   ScratchFolder folder_;
@@ -52,7 +53,7 @@ constexpr double kEndless = 1000;  // s
 
 /// The file at the top of docs/vehicles.md, and the vehicles of its dry run.
 TEST_F(Vehicles, OfTheirPageFlyAndKeepApart) {
-  const std::string page = ReadFile(MASCOT_SOURCE_DIR "/docs/vehicles.md"), begin = "```toml\n";
+  const std::string page = ReadFile(SourceFolder() + "/docs/vehicles.md"), begin = "```toml\n";
   const std::size_t from = page.find(begin) + begin.size();
   WriteFile(folder_.File("team.toml"), page.substr(from, page.find("```", from) - from));
   for (const char* words : {"--namespace px4_1 --system-id 2 --place 4,0,0 &", "--place 0,4,0 --release 1.18 &"})
@@ -257,7 +258,7 @@ TEST_F(Vehicles, MotorsStopWhenSomebodyMeansIt) {
   Running& px4 = airfield_.AddPx4(1, "0,0,0");
   Up up = Fly(Team("[1]", kPx4, kEndless));
   ASSERT_TRUE(Until([&] { return up.Said("vehicle 1: flying"); })) << up.err();
-  const std::string kill = "'" MASCOT_BINARY_DIR "/orchestrator' send --run '" + up.path().string() + "' kill 1";
+  const std::string kill = "'" + BuildFolder() + "/orchestrator' send --run '" + up.path().string() + "' kill 1";
   const Ran doubtful = Shell("printf 'no\\n' | script -qec \"" + kill + "\" /dev/null");
   EXPECT_EQ(doubtful.exit_code, 1);
   EXPECT_THAT(doubtful.output, AllOf(HasSubstr("Stop the motors of vehicle 1? In the air it falls. Type yes: "),

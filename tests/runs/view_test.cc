@@ -4,6 +4,7 @@
 
 #include "bus/addresses.h"
 #include "tests/orchestrator/live/shown/viewer.h"
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/repeated.h"
 
@@ -39,7 +40,7 @@ std::string UrlOf(const Running& up) {
 }
 
 Ran WsCheck(const std::string& url) {
-  return Shell("node '" MASCOT_SOURCE_DIR "/tests/wscheck/wscheck.mjs' ws" + url.substr(4));
+  return Shell("node '" + SourceFolder() + "/tests/wscheck/wscheck.mjs' ws" + url.substr(4));
 }
 
 /// Records 5 s of three agents.
@@ -56,7 +57,7 @@ std::string Record(const ScratchFolder& folder) {
 class ViewOf : public Running {
  public:
   ViewOf(const ScratchFolder& folder, const std::string& run, const std::string& at = "127.0.0.1:0")
-      : Running(MASCOT_BINARY_DIR "/orchestrator", {"view", run, "--at", at}, folder.File("view")) {}
+      : Running(BuildFolder() + "/orchestrator", {"view", run, "--at", at}, folder.File("view")) {}
 };
 
 TEST(UpWithView, IsReadByFoxglovesOwnPackagesOverDds) {
@@ -123,7 +124,7 @@ TEST(UpWithView, EndsWithTheRunElsewhere) {
 TEST(UpWithView, RefusesMetricsWithoutItAndMistakesInThem) {
   const ScratchFolder folder;
   WriteFile(folder.File("wrong.py"), "METRICS = ['nobody']\n");
-  const std::string up = "'" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") + " --metric ";
+  const std::string up = "'" + BuildFolder() + "/orchestrator' up " + Config("leaderless") + " --metric ";
   const Ran alone = Shell(up + folder.File("wrong.py"));
   EXPECT_EQ(alone.exit_code, 2);
   EXPECT_THAT(alone.output,
@@ -138,7 +139,7 @@ TEST(UpWithView, RefusesMetricsWithoutItAndMistakesInThem) {
 }
 
 TEST(UpWithView, RefusesToStayWithoutIt) {
-  const Ran run = Shell("'" MASCOT_BINARY_DIR "/orchestrator' up " + Config("leaderless") + " --stay");
+  const Ran run = Shell("'" + BuildFolder() + "/orchestrator' up " + Config("leaderless") + " --stay");
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.output, HasSubstr("error: --stay: expected --view with it\n"));
 }
@@ -341,7 +342,7 @@ TEST(View, TellsEventsByHandFromThoseOfTheFileByTheTableBesideTheRecording) {
   Up up(folder, "run", folder.File("run.toml"),
         {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--set", "run.pace=1.0"});
   const auto send = [&](const std::string& words) {
-    return Shell("'" MASCOT_BINARY_DIR "/orchestrator' send --run '" + up.path().string() + "' " + words + " 2>&1");
+    return Shell("'" + BuildFolder() + "/orchestrator' send --run '" + up.path().string() + "' " + words + " 2>&1");
   };
   EXPECT_TRUE(Until([&] { return up.IsOver() || send("pause").exit_code == 0; })) << up.err();
   EXPECT_THAT(send("event 'set = { \"link.loss\" = 0.5 }\n'").output, StartsWith("takes effect at "));
@@ -396,7 +397,7 @@ TEST(View, SaysWhomItRefusesAndLetsInWhoIsAllowed) {
   EXPECT_TRUE(
       Says(strict, ": refused: a page of http://localhost:8080 (--allow-origin http://localhost:8080 lets it in)\n"))
       << strict.err();
-  Running open(MASCOT_BINARY_DIR "/orchestrator",
+  Running open(BuildFolder() + "/orchestrator",
                {"view", recording, "--at", "127.0.0.1:0", "--allow-origin", "http://localhost:8080"},
                folder.File("open"));
   EXPECT_EQ(upgrade(open, "http://localhost:8080"), "HTTP/1.1 101");

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "orchestrator/engines/dds/machine/domain_lock.h"
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -43,7 +44,7 @@ class Airfield {
     words.insert(words.end(), {"--domain", std::to_string(domain())});
     words.insert(words.end(), more.begin(), more.end());
     auto& vehicle = vehicles_[agent];
-    vehicle = std::make_unique<Running>(MASCOT_BINARY_DIR "/fake_" + kind, words,
+    vehicle = std::make_unique<Running>(BuildFolder() + "/fake_" + kind, words,
                                         folder_.File(kind + "_" + std::to_string(agent)));
     return *vehicle;
   }

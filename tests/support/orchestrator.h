@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 #include "tests/support/waits.h"
 
@@ -23,9 +24,7 @@ extern char** environ;
 
 namespace mascot::test {
 
-inline std::string Config(const std::string& name) {
-  return std::string(MASCOT_SOURCE_DIR) + "/configs/" + name + ".toml";
-}
+inline std::string Config(const std::string& name) { return SourceFolder() + "/configs/" + name + ".toml"; }
 
 /// Sends a signal to a process; the test fails if there is none. A number of 0 (no such child) or -1 (not started) is
 /// never passed on: kill(2) takes them for our process group, and for every process.
@@ -92,8 +91,7 @@ class Up : public Running {
  public:
   Up(const ScratchFolder& folder, const std::string& name, const std::string& config,
      std::vector<std::string> more = {})
-      : Running(std::string(MASCOT_BINARY_DIR) + "/orchestrator", Words(folder, name, config, std::move(more)),
-                folder.File(name)),
+      : Running(BuildFolder() + "/orchestrator", Words(folder, name, config, std::move(more)), folder.File(name)),
         path_(folder.File(name)) {}
 
   const std::filesystem::path& path() const { return path_; }
@@ -101,7 +99,7 @@ class Up : public Running {
   nlohmann::json Summary() const { return nlohmann::json::parse(File("summary.json")); }
   /// What `orchestrator info` prints of the recording.
   std::string Info() const {
-    return Shell("'" MASCOT_BINARY_DIR "/orchestrator' info '" + path_.string() + "'").output;
+    return Shell("'" + BuildFolder() + "/orchestrator' info '" + path_.string() + "'").output;
   }
   /// Process id of a child; 0 before it has been spawned.
   pid_t Child(const std::string& process) const;

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/scratch.h"
 
@@ -106,7 +107,7 @@ TEST(Waits, HaveADeadlineInAllTests) {
   // These give the others their deadlines; the stranger is a program that a test ends.
   const std::vector<std::string> apart = {"waits.h", "waits_test.cc", "scratch.h", "cyclone_note.cc"};
   int files = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(MASCOT_SOURCE_DIR "/tests")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(SourceFolder() + "/tests")) {
     if (!entry.is_regular_file()) continue;
     if (std::ranges::find(apart, entry.path().filename().string()) != apart.end()) continue;
     if (entry.path().string().find("node_modules") != std::string::npos) continue;

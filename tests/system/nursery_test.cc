@@ -7,6 +7,7 @@
 
 #include "system/children.h"
 #include "system/descendants.h"
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -42,7 +43,7 @@ class Nursery : public testing::Test {
 
 TEST_F(Nursery, MakesChildrenOfOursWithArgumentsAndLogsOfTheirOwn) {
   const std::vector<pid_t> ids =
-      children_.SpawnCopies(MASCOT_BINARY_DIR "/agent",
+      children_.SpawnCopies(BuildFolder() + "/agent",
                             {Copy("helps", {"--help"}), Copy("refuses", {"--id", "3", "--domain", "none"})}, kPatient);
   ASSERT_EQ(ids.size(), 2);
   EXPECT_NE(ids[0], ids[1]);
@@ -79,7 +80,7 @@ TEST_F(Nursery, ThatHangsIsWaitedForNoLongerThanOneMay) {
 }
 
 TEST_F(Nursery, MayPrintWhatItLikes) {
-  const std::string talks = Script("echo 1 2 3\nexec " MASCOT_BINARY_DIR "/agent \"$@\"");
+  const std::string talks = Script("echo 1 2 3\nexec " + BuildFolder() + "/agent \"$@\"");
   ASSERT_EQ(children_.SpawnCopies(talks, {Copy("talks", {"--help"})}, kPatient).size(), 1);
   Await("its end", [&] { return !children_.Reap().empty(); });
   logs_.LastLines("talks");
@@ -87,7 +88,7 @@ TEST_F(Nursery, MayPrintWhatItLikes) {
 }
 
 TEST_F(Nursery, AnOrderThatEndsTooEarlyIsRefused) {
-  const Ran ran = Shell("printf '0\\0002\\0001' | '" MASCOT_BINARY_DIR "/agent' --nursery '       '");
+  const Ran ran = Shell("printf '0\\0002\\0001' | '" + BuildFolder() + "/agent' --nursery '       '");
   EXPECT_EQ(ran.exit_code, 1);
   EXPECT_THAT(ran.output, HasSubstr("error: --nursery: an order that ends too early"));
 }

@@ -20,6 +20,7 @@
 #include "base/utf8.h"
 #include "system/console.h"
 #include "system/standard_streams.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 #include "tests/support/waits.h"
 
@@ -148,8 +149,9 @@ std::vector<std::string> DrawnBy(const std::vector<std::string>& words, const st
     std::vector<char*> argv{const_cast<char*>("orchestrator")};
     for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);
+    const std::string program = BuildFolder() + "/orchestrator";
     setenv("NO_COLOR", "1", 1);
-    if (chdir(folder.c_str()) == 0) execv(MASCOT_BINARY_DIR "/orchestrator", argv.data());
+    if (chdir(folder.c_str()) == 0) execv(program.c_str(), argv.data());
     _exit(127);
   }
   const std::string bytes = ReadToEnd(terminal);
@@ -264,7 +266,7 @@ TEST(Console, PrintsColoursOfItsOwnAndNoneOfOthers) {
 TEST(Words, OfOthersReachNoTerminalAsTheyAre) {
   const ScratchFolder folder;
   // As strangers, files and users write them: colours, text from right to left, no UTF-8.
-  const std::string evil = "\x1b[31m\u202e\x9b\u2066", program = "'" MASCOT_BINARY_DIR "/orchestrator' ";
+  const std::string evil = "\x1b[31m\u202e\x9b\u2066", program = "'" + BuildFolder() + "/orchestrator' ";
   WriteFile(folder.File("good.toml"),
             "[run]\nname = \"x\"\nduration_s = 0.1\n[agents]\ncount = 2\nmodel = \"double_integrator\"\n[graph]\n"
             "topology = \"ring\"\n[output]\nsave_plot = false\n[law]\nname = \"consensus\"\n");
@@ -314,7 +316,7 @@ TEST(Words, OfOthersReachNoTerminalAsTheyAre) {
 }
 
 TEST(Words, OfAnAgentThatIsStartedByHandAreFit) {
-  const Ran ran = Shell("'" MASCOT_BINARY_DIR "/agent' --id 1 --domain 3 '--\x1b[31m\u202e' </dev/null");
+  const Ran ran = Shell("'" + BuildFolder() + "/agent' --id 1 --domain 3 '--\x1b[31m\u202e' </dev/null");
   EXPECT_EQ(ran.exit_code, 2);
   EXPECT_EQ(Plain(ran.output), ran.output);
   EXPECT_THAT(ran.output, testing::HasSubstr("\\u001b[31m\\u202e"));

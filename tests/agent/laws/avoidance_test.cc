@@ -7,6 +7,7 @@
 #include "agent/laws/avoidance/repulsion.h"
 #include "base/random.h"
 #include "experiment/live_experiment.h"
+#include "tests/support/folders.h"
 #include "tests/support/ideal_network.h"
 #include "tests/support/law_run.h"
 #include "tests/support/scratch.h"
@@ -233,7 +234,7 @@ TEST(Avoidance, AGoalThatAnEventMovesIsReachedAnew) {
 
 /// The shipped obstacle course, with `repulsion`.
 std::string Course(const std::string& repulsion) {
-  std::string toml = ReadFile(MASCOT_SOURCE_DIR "/configs/avoidance.toml");
+  std::string toml = ReadFile(test::SourceFolder() + "/configs/avoidance.toml");
   const std::string shipped = "repulsion = 0.5";
   return toml.replace(toml.rfind(shipped), shipped.size(), "repulsion = " + repulsion);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "agent/laws/flocking/sigma_norm.h"
+#include "tests/support/folders.h"
 #include "tests/support/ideal_network.h"
 #include "tests/support/law_run.h"
 #include "tests/support/scratch.h"
@@ -287,7 +288,7 @@ TEST(Flocking, SingleIntegratorsAndQuadrotorsFlockToo) {
 }
 
 TEST(Flocking, TwentyQuadrotorsReachOneVelocityWithoutAContact) {
-  const LawRun run(ReadFile(MASCOT_SOURCE_DIR "/configs/flocking.toml"));
+  const LawRun run(ReadFile(test::SourceFolder() + "/configs/flocking.toml"));
   EXPECT_EQ(run.experiment.size(), 20);
   EXPECT_EQ(run.summary["safety"]["collisions"], 0);
   EXPECT_GT(run.Measured("least_distance_m"), 1.2);

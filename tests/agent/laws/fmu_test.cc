@@ -7,6 +7,7 @@
 #include "agent/laws/laws.h"
 #include "base/base64.h"
 #include "tests/experiment/fly_rows.h"
+#include "tests/support/folders.h"
 #include "tests/support/noise.h"
 #include "tests/support/scratch.h"
 #include "tests/support/three_agents.h"
@@ -16,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string FmuFile(int version) { return fmt::format("{}/tests/fmus/law_fmi{}.fmu", MASCOT_BINARY_DIR, version); }
+std::string FmuFile(int version) { return fmt::format("{}/tests/fmus/law_fmi{}.fmu", test::BuildFolder(), version); }
 std::string LawWith(int version, const std::string& lines = "") {
   return "name = 'fmu'\nfile = '" + FmuFile(version) + "'\n" + lines;
 }

@@ -14,6 +14,7 @@
 #include "base/base64.h"
 #include "experiment/live_experiment.h"
 #include "experiment/live_keys.h"
+#include "tests/support/folders.h"
 #include "tests/support/ideal_network.h"
 #include "tests/support/onnx_model.h"
 #include "tests/support/scratch.h"
@@ -86,7 +87,7 @@ std::vector<Setting> CustomSettings() {
 /// Settings for laws in shared libraries, with those of tests/plugins.
 std::vector<Setting> PluginSettings() {
   const auto library = [](const std::string& name) {
-    return "library = '" MASCOT_BINARY_DIR "/tests/plugins/lib" + name + ".so'\n";
+    return "library = '" + test::BuildFolder() + "/tests/plugins/lib" + name + ".so'\n";
   };
   const std::string base = library("mirror");
   return {{"library", base, library("talker")},
@@ -123,7 +124,7 @@ std::vector<Setting> PolicySettings() {
 /// Settings for the law that is an FMU, with those of tests/fmus.
 std::vector<Setting> FmuSettings() {
   const auto fmu = [](int version) {
-    const std::string file = fmt::format("{}/tests/fmus/law_fmi{}.fmu", MASCOT_BINARY_DIR, version);
+    const std::string file = fmt::format("{}/tests/fmus/law_fmi{}.fmu", test::BuildFolder(), version);
     return "fmu_base64 = '" + ToBase64(ReadFile(file)) + "'\n";
   };
   const std::string base = fmu(2), gain = "params = { p_gain = 0.5 }\n";
@@ -136,7 +137,7 @@ std::vector<Setting> FmuSettings() {
 /// Reads tests/law_settings/LAW.toml. Each of its [keys] has the lines of [law] that change it, added to `base`, or two
 /// sets of lines that differ in it. `experiment`: another team than five on a path.
 Trial ReadTrial(std::string_view law) {
-  const toml::table file = toml::parse_file(MASCOT_SOURCE_DIR "/tests/law_settings/" + std::string(law) + ".toml");
+  const toml::table file = toml::parse_file(test::SourceFolder() + "/tests/law_settings/" + std::string(law) + ".toml");
   const std::string base = file["base"].value_or("");
   Trial trial{.experiment = file["experiment"].value_or(kFiveOnAPath), .settings = {}};
   for (const auto& [key, lines] : *file["keys"].as_table()) {
@@ -162,7 +163,7 @@ std::string With(const Trial& trial, std::string_view law, const std::string& li
 
 TEST(LawTable, HasTheLawOfEveryFileThatDefinesOne) {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(MASCOT_SOURCE_DIR "/agent/laws"))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::SourceFolder() + "/agent/laws"))
     if (entry.path().extension() == ".cc" && ReadFile(entry.path()).find("\nLawEntry ") != std::string::npos)
       files.push_back(entry.path().stem());
   EXPECT_THAT(files, ::testing::UnorderedElementsAreArray(LawNames()));

@@ -14,6 +14,7 @@
 #include "agent/laws/trajectory/path_samples.h"
 #include "orchestrator/sweeping/table/metrics.h"
 #include "tests/experiment/fly_rows.h"
+#include "tests/support/folders.h"
 #include "tests/support/ideal_network.h"
 #include "tests/support/law_run.h"
 #include "tests/support/scratch.h"
@@ -227,7 +228,7 @@ TEST(Trajectory, SamplesAreFlownThroughAtTheirTimesFromRestToRest) {
 }
 
 TEST(Trajectory, SamplesOfAFileAreInTheResolvedExperiment) {
-  const std::string path = MASCOT_SOURCE_DIR "/tests/good_configs/trajectory_file.toml";
+  const std::string path = test::SourceFolder() + "/tests/good_configs/trajectory_file.toml";
   Section document = Section::FromFile(path);
   const Experiment experiment = LoadExperiment(document, "test");
   IdealNetwork again(document.Resolved());

@@ -3,6 +3,7 @@
 
 #include "agent/agent.h"
 #include "agent/laws/laws.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 #include "tests/support/three_agents.h"
 
@@ -15,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::ThrowsMessage;
 
-std::string Library(const std::string& name) { return MASCOT_BINARY_DIR "/tests/plugins/lib" + name + ".so"; }
+std::string Library(const std::string& name) { return test::BuildFolder() + "/tests/plugins/lib" + name + ".so"; }
 
 /// An experiment with the plug-in `name`: lines 10 and 11 of [law]; `lines` follow.
 std::string Plugin(const std::string& name, const std::string& lines = "") {

@@ -6,6 +6,7 @@
 #include "agent/laws/parts/observation.h"
 #include "base/base64.h"
 #include "tests/experiment/fly_rows.h"
+#include "tests/support/folders.h"
 #include "tests/support/onnx_model.h"
 #include "tests/support/scratch.h"
 
@@ -115,14 +116,14 @@ TEST_F(PolicyLaw, TellsWhatItsAgentsPerceive) {
 TEST(ShippedPolicy, IsWhatItsScriptWrites) {
   const ScratchFolder scratch;
   const std::string hash = ObservationLayout{.places = 3, .message = 0}.Hash();
-  const Ran ran = Shell("/usr/bin/python3 " MASCOT_SOURCE_DIR "/docs/examples/policy/consensus_policy.py 3 " + hash +
-                        " " + scratch.File("policy.onnx"));
+  const Ran ran = Shell("/usr/bin/python3 " + test::SourceFolder() + "/docs/examples/policy/consensus_policy.py 3 " +
+                        hash + " " + scratch.File("policy.onnx"));
   ASSERT_EQ(ran.exit_code, 0) << ran.output;
-  EXPECT_EQ(ReadFile(scratch.File("policy.onnx")), ReadFile(MASCOT_SOURCE_DIR "/configs/policy.onnx"));
+  EXPECT_EQ(ReadFile(scratch.File("policy.onnx")), ReadFile(test::SourceFolder() + "/configs/policy.onnx"));
 }
 
 TEST(ShippedPolicy, FliesAsTheConsensusLawWhoseGainsItHas) {
-  const std::string file = MASCOT_SOURCE_DIR "/configs/policy.toml";
+  const std::string file = test::SourceFolder() + "/configs/policy.toml";
   const std::vector<Override> shorter = {{.key = "run.duration_s", .value = "10.0"}};
   std::vector<Override> law = shorter;
   law.push_back({.key = "law", .value = "{ name = 'consensus', p_gain = 0.046875, beta = 0.90625 }"});

@@ -7,13 +7,14 @@
 
 #include "agent/network/network.h"
 #include "tests/agent/network/random_network.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 
 namespace mascot::test {
 namespace {
 
 TEST(NetworkBesideOnnxRuntime, AnswersAlikeOnAThousandRandomNetworks) {
-  const std::string folder = MASCOT_SOURCE_DIR "/tests/onnxruntime";
+  const std::string folder = SourceFolder() + "/tests/onnxruntime";
   if (!std::filesystem::exists(folder + "/node_modules"))
     throw std::runtime_error(folder + "/node_modules is missing: run scripts/test, which installs it with `npm ci`");
   constexpr unsigned kNetworks = 1000;

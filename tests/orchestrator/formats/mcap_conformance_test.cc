@@ -17,6 +17,7 @@
 #include "orchestrator/formats/mcap/reader.h"
 #include "orchestrator/formats/mcap/records.h"
 #include "orchestrator/formats/mcap/writer.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -26,7 +27,7 @@ using mcap::Fields;
 using mcap::Op;
 using Json = nlohmann::json;
 
-const std::filesystem::path kOurs = MASCOT_SOURCE_DIR "/tests/mcap_conformance";
+const std::filesystem::path kOurs = test::SourceFolder() + "/tests/mcap_conformance";
 const std::filesystem::path kTheirs = kOurs / "foxglove";  // see tests/mcap_conformance/fetch
 
 /// A file, and what its .json says of it.

@@ -11,6 +11,7 @@
 #include "idl/topics.h"
 #include "orchestrator/formats/bytes.h"
 #include "orchestrator/formats/mcap/writer.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -20,7 +21,7 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 Ran McapCheck(const std::string& path, const std::string& options) {
-  const std::string folder = MASCOT_SOURCE_DIR "/tests/mcapcheck";
+  const std::string folder = test::SourceFolder() + "/tests/mcapcheck";
   if (!std::filesystem::exists(folder + "/node_modules"))
     return {-1, "tests/mcapcheck/node_modules is missing: run scripts/test, which installs it with `npm ci`\n"};
   return Shell("node '" + folder + "/mcapcheck.mjs' '" + path + "' --all --strict " + options);
@@ -239,7 +240,7 @@ TEST(Schemas, TypeHashesAreThoseThatRosPublishes) {
   EXPECT_EQ(SchemaOf("nav_msgs/msg/Odometry").type_hash,
             "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0");
   // A type with nested types, which is not the type of any of our topics.
-  const Ran ran = Shell("/usr/bin/python3 " MASCOT_SOURCE_DIR "/scripts/type_hash.py " MASCOT_SOURCE_DIR
+  const Ran ran = Shell("/usr/bin/python3 " + test::SourceFolder() + "/scripts/type_hash.py " + test::SourceFolder() +
                         "/idl/ros_interfaces -- geometry_msgs/msg/Twist");
   EXPECT_EQ(ran.output,
             "geometry_msgs/msg/Twist RIHS01_9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a\n");

@@ -10,6 +10,7 @@
 #include "orchestrator/engines/inprocess.h"
 #include "orchestrator/measuring/law_curve.h"
 #include "orchestrator/measuring/run_meter.h"
+#include "tests/support/folders.h"
 #include "tests/support/param_name.h"
 
 namespace mascot {
@@ -49,7 +50,7 @@ struct CurveOfRun final : RowSink {
 };
 
 Experiment ShippedFor(const std::string& law, const char* duration_s) {
-  const std::string path = MASCOT_SOURCE_DIR "/configs/" + law + ".toml";
+  const std::string path = test::SourceFolder() + "/configs/" + law + ".toml";
   const Override shorter[] = {{.key = "run.duration_s", .value = duration_s}};
   return LoadExperiment(Section::FromFile(path, shorter), law);
 }

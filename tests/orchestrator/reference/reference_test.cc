@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "agent/laws/laws.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -23,7 +24,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-const fs::path kSource = MASCOT_SOURCE_DIR;
+const fs::path kSource = test::SourceFolder();
 
 std::vector<fs::path> TomlFiles(const fs::path& folder, const std::vector<std::string>& prefixes = {""}) {
   std::vector<fs::path> files;
@@ -40,7 +41,7 @@ std::vector<fs::path> TomlFiles(const fs::path& folder, const std::vector<std::s
 std::vector<fs::path> GoodConfigs() {
   std::vector<fs::path> files = TomlFiles(kSource / "tests/good_configs");
   for (const char* const built : {"plugins/plugin.toml", "fmus/fmu.toml", "fmus/law_fmi3.toml"})
-    files.push_back(fs::path(MASCOT_BINARY_DIR "/tests") / built);
+    files.push_back(fs::path(test::BuildFolder() + "/tests") / built);
   return files;
 }
 
@@ -248,7 +249,7 @@ struct Verdict {
 
 /// Checks files with taplo: all against our schema, or each against the schema that it names.
 Verdict Taplo(const std::vector<fs::path>& files, bool by_our_schema) {
-  const std::string program = MASCOT_SOURCE_DIR "/tests/taplo/node_modules/.bin/taplo";
+  const std::string program = test::SourceFolder() + "/tests/taplo/node_modules/.bin/taplo";
   if (!fs::exists(program))
     throw std::runtime_error("tests/taplo/node_modules is missing: run scripts/test, which installs it with `npm ci`");
   std::string command = "'" + program + "' check --colors never";

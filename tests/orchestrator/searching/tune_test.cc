@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/orchestrator/sweeping/sweep_table.h"
+#include "tests/support/folders.h"
 
 namespace mascot::test {
 namespace {
@@ -15,7 +16,7 @@ using ::testing::SizeIs;
 class TuneTest : public SweepTest {
  protected:
   std::string TuneWords(const std::string& more) const {
-    return std::string(MASCOT_BINARY_DIR) + "/orchestrator tune " + config_ + " --out " + out_ + " " + more;
+    return BuildFolder() + "/orchestrator tune " + config_ + " --out " + out_ + " " + more;
   }
   Ran Tune(const std::string& more) const { return Shell(TuneWords(more)); }
   std::string Own() const { return folder_.File("own.py"); }
@@ -122,7 +123,7 @@ TEST_F(TuneTest, TakesARunWithoutAValueForTheWorst) {
   EXPECT_THAT(
       ran.output,
       HasSubstr("error: tune: expected a value of consensus.settling_time_s for some candidate, got none of 2"));
-  const Ran drawn = Shell(MASCOT_SOURCE_DIR "/scripts/plot_tuning.py " + out_ + " " + folder_.File("x.png") +
+  const Ran drawn = Shell(SourceFolder() + "/scripts/plot_tuning.py " + out_ + " " + folder_.File("x.png") +
                           " consensus.settling_time_s law.p_gain");
   EXPECT_EQ(drawn.exit_code, 1);
   EXPECT_EQ(drawn.output, "error: " + out_ + ": no candidate has a consensus.settling_time_s\n");
@@ -187,7 +188,8 @@ TEST_F(TuneTest, EndsWithItsOptimiser) {
 TEST(Optimizer, SaysWhichPackageItNeeds) {
   const Ran ran = Shell(
       "/usr/bin/python3 -c \"import runpy, sys; sys.modules['optuna'] = None; "
-      "runpy.run_path('" MASCOT_SOURCE_DIR "/scripts/optimizer.py', run_name='__main__')\"");
+      "runpy.run_path('" +
+      SourceFolder() + "/scripts/optimizer.py', run_name='__main__')\"");
   EXPECT_EQ(ran.exit_code, 1);
   EXPECT_THAT(ran.output, HasSubstr("error: tune needs Optuna (Debian: apt-get install python3-optuna): "));
 }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/scratch.h"
 
@@ -25,7 +26,7 @@ class Surroundings : public testing::Test {
  protected:
   /// Runs a command line of a shell in the scratch folder; `$O` is the orchestrator.
   Ran In(const std::string& command) const {
-    return Shell("cd '" + scratch_.path().string() + "' && O=" MASCOT_BINARY_DIR "/orchestrator && " + command);
+    return Shell("cd '" + scratch_.path().string() + "' && O=" + test::BuildFolder() + "/orchestrator && " + command);
   }
   void ExpectDone(const std::string& command) const {
     const Ran ran = In(command);

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include "tests/orchestrator/sweeping/sweep_table.h"
+#include "tests/support/folders.h"
 
 namespace mascot::test {
 namespace {
@@ -23,7 +24,7 @@ class SweepShards : public SweepTest {
     }
   }
   Ran Merge(const std::string& words) const {
-    return Shell("cd " + folder_.path().string() + " && " + MASCOT_BINARY_DIR + "/orchestrator sweep merge " + words);
+    return Shell("cd " + folder_.path().string() + " && " + BuildFolder() + "/orchestrator sweep merge " + words);
   }
   std::string Folder(const std::string& name) const { return folder_.File(name); }
 };
@@ -81,7 +82,7 @@ TEST_F(SweepShards, AreThoseOfTheTasksOfAJobArray) {
 TEST_F(SweepShards, GoOnAfterASignal) {
   for (const auto& [signal, code] : {std::pair{SIGUSR1, 138}, std::pair{SIGTERM, 143}}) {
     const std::string table = Folder("sweep.1-of-2.csv");
-    Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
+    Running sweep(BuildFolder() + "/orchestrator",
                   {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--shard", "1/2"}, Folder("interrupted"));
     const std::size_t before = RowsSoFar(table);
     ASSERT_TRUE(Until([&] { return RowsSoFar(table) > before + 2; }));
@@ -174,7 +175,7 @@ TEST_F(SweepShards, BecomeTheTasksOfAJobArray) {
   const std::string folder = Folder("it's here");
   std::filesystem::create_directory(folder);
   const std::string enter = "cd \"" + folder + "\" && ";
-  const std::string sweep = enter + MASCOT_BINARY_DIR + "/orchestrator sweep " + config_ + " --out s.csv --seeds 1..9 ";
+  const std::string sweep = enter + BuildFolder() + "/orchestrator sweep " + config_ + " --out s.csv --seeds 1..9 ";
   const Ran ran =
       Shell(sweep + "--slurm --tasks 3 --jobs 2 --slurm-option --partition=long --slurm-option --time=9:00");
   ASSERT_EQ(ran.exit_code, 0) << ran.output;
@@ -186,7 +187,7 @@ TEST_F(SweepShards, BecomeTheTasksOfAJobArray) {
     EXPECT_THAT(
         Shell("SLURM_ARRAY_TASK_ID=" + std::string(task) + " bash '" + Folder("it'\\''s here") + "/s.sbatch'").output,
         HasSubstr("share " + std::string(task) + "/3, 3 of 9 runs: s." + task + "-of-3.csv\n"));
-  EXPECT_EQ(Shell(enter + MASCOT_BINARY_DIR + "/orchestrator sweep merge s.csv --no-plot").exit_code, 0);
+  EXPECT_EQ(Shell(enter + BuildFolder() + "/orchestrator sweep merge s.csv --no-plot").exit_code, 0);
   EXPECT_THAT(Table(folder + "/s.csv").rows, SizeIs(9));
 }
 
@@ -263,7 +264,7 @@ TEST_F(SweepShards, RefuseOptionsThatDoNotBelongTogether) {
     EXPECT_THAT(ran.output, HasSubstr(text)) << words;
     EXPECT_FALSE(std::filesystem::exists(Folder("sweep.sbatch"))) << words;
   }
-  const Ran none = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator sweep");
+  const Ran none = Shell(BuildFolder() + "/orchestrator sweep");
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_EQ(none.output, "error: sweep: expected CONFIG, an experiment file, or merge FILE...\n");
   const Ran away = Shell("PATH= " + Words("--seeds 1..9 --slurm --submit"));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/strict_csv.h"
 
@@ -52,7 +53,7 @@ class SweepTest : public ::testing::Test {
               "[run]\nduration_s = 2.0\n[agents]\ncount = 3\n[graph]\ntopology = 'ring'\n[law]\np_gain = 0.3\n");
   }
   std::string Words(const std::string& more) const {
-    return std::string(MASCOT_BINARY_DIR) + "/orchestrator sweep " + config_ + " --out " + out_ + " " + more;
+    return BuildFolder() + "/orchestrator sweep " + config_ + " --out " + out_ + " " + more;
   }
   Ran Sweep(const std::string& more) const { return Shell(Words(more)); }
 

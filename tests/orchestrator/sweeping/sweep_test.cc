@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tests/orchestrator/sweeping/sweep_table.h"
+#include "tests/support/folders.h"
 
 namespace mascot::test {
 namespace {
@@ -51,7 +52,7 @@ TEST_F(SweepTest, GoesOnAfterItWasKilledWithNoRowTwiceAndNoneHalf) {
   ASSERT_THAT(whole, SizeIs(200));
   std::filesystem::remove(out_);
   {
-    Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
+    Running sweep(BuildFolder() + "/orchestrator",
                   {"sweep", config_, "--out", out_, "--set", "law.p_gain=0.01:0.01:2.0", "--no-plot"},
                   folder_.File("killed"));
     ASSERT_TRUE(Until([&] { return RowsSoFar(out_) > 5; }));
@@ -67,8 +68,8 @@ TEST_F(SweepTest, GoesOnAfterItWasKilledWithNoRowTwiceAndNoneHalf) {
 }
 
 TEST_F(SweepTest, CanBeInterruptedAndSaysHowToGoOn) {
-  Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
-                {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--no-plot"}, folder_.File("interrupted"));
+  Running sweep(BuildFolder() + "/orchestrator", {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--no-plot"},
+                folder_.File("interrupted"));
   ASSERT_TRUE(Until([&] { return RowsSoFar(out_) > 2; }));
   SignalTo(sweep.pid(), SIGINT);
   EXPECT_EQ(sweep.Wait(), 130);
@@ -76,7 +77,7 @@ TEST_F(SweepTest, CanBeInterruptedAndSaysHowToGoOn) {
 }
 
 TEST_F(SweepTest, CanBeInterruptedWhileItLooksForAValidRun) {
-  Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
+  Running sweep(BuildFolder() + "/orchestrator",
                 {"sweep", config_, "--out", out_, "--set", "law.p_gain=-1", "--seeds", "1..1000000", "--force"},
                 folder_.File("looks"));
   const std::string pid = std::to_string(sweep.pid());
@@ -342,7 +343,7 @@ TEST_F(SweepTest, SaysWhereATableIsWrongBeforeAnythingFlies) {
     mistakes += (row == 0 ? "" : "\nerror: ") + plan + ":" + std::to_string(row + 2) +
                 ":1: law.p_gain: expected a number in [0, 1000], got " + std::to_string(row - 22);
   refuses(many, "", mistakes + "\nerror: sweep: 2 more mistakes");
-  const Ran both = Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator sweep - --plan - < " + config_);
+  const Ran both = Shell(BuildFolder() + "/orchestrator sweep - --plan - < " + config_);
   EXPECT_EQ(both.exit_code, 2);
   EXPECT_EQ(both.output, "error: --plan: expected another input than CONFIG, got <stdin> for both\n");
   EXPECT_EQ(Sweep("--plan ''").exit_code, 2);
@@ -414,7 +415,7 @@ TEST_F(SweepTest, HasTheFiguresOfEveryLawThatARunEndsWith) {
 }
 
 TEST_F(SweepTest, FliesTheLawTablesThatTheDocumentShows) {
-  const std::string text = ReadFile(std::string(MASCOT_SOURCE_DIR) + "/docs/sweep.md");
+  const std::string text = ReadFile(SourceFolder() + "/docs/sweep.md");
   const auto begin = text.find("--set 'law={"), end = text.find('`', begin);
   ASSERT_NE(end, text.npos);
   const Ran ran = Sweep(text.substr(begin, end - begin) + " --no-plot");
@@ -456,7 +457,7 @@ TEST_F(SweepTest, RefusesWhatCannotBeSwept) {
 
 TEST_F(SweepTest, IsComparedRunByRunByAVerbOfItsOwn) {
   const auto compare = [&](const std::string& words) {
-    return Shell(std::string(MASCOT_BINARY_DIR) + "/orchestrator compare " + words);
+    return Shell(BuildFolder() + "/orchestrator compare " + words);
   };
   std::string runs;
   for (const char* gain : {"0.2", "0.4"}) {
@@ -473,7 +474,7 @@ TEST_F(SweepTest, IsComparedRunByRunByAVerbOfItsOwn) {
   EXPECT_EQ(nlohmann::json::parse(json.output)["config"]["law.p_gain"], nlohmann::json({0.2, 0.4}));
   const Ran newest = Shell("cd '" + folder_.path().string() + "' && mkdir runs && mv gain_0.2 gain_0.4 runs && touch " +
                            "-d 2020-01-01 runs/gain_0.2/config.toml && mkdir other && cp -r runs/gain_0.2 other && " +
-                           std::string(MASCOT_BINARY_DIR) + "/orchestrator compare other latest");
+                           BuildFolder() + "/orchestrator compare other latest");
   EXPECT_THAT(newest.output, HasSubstr("other/gain_0.2  runs/gain_0.4\n")) << "found as by the other verbs";
   const Ran nowhere = compare(folder_.File("other") + " latest");
   EXPECT_EQ(nowhere.exit_code, 2);
@@ -511,8 +512,8 @@ TEST_F(SweepTest, KeepsApartTheFilesOfTablesWhoseNamesDifferBehindADot) {
 }
 
 TEST_F(SweepTest, RefusesATableThatAnotherSweepIsWriting) {
-  Running sweep(std::string(MASCOT_BINARY_DIR) + "/orchestrator",
-                {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--no-plot"}, folder_.File("first"));
+  Running sweep(BuildFolder() + "/orchestrator", {"sweep", config_, "--out", out_, "--seeds", "1..5000", "--no-plot"},
+                folder_.File("first"));
   ASSERT_TRUE(Until([&] { return RowsSoFar(out_) > 2; }));
   for (const char* words : {"--seeds 1..5000 --no-plot", "--seeds 1..2 --no-plot --force"}) {
     const Ran second = Sweep(words);

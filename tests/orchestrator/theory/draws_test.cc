@@ -7,6 +7,7 @@
 
 #include "agent/laws/laws.h"
 #include "orchestrator/engines/inprocess.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -107,7 +108,7 @@ TEST(Draws, WhatIsCertainOrConcernsNobodyIsNotDrawn) {
 
 TEST(Draws, ShippedExperimentsWithoutThemAreTheSameWithEverySeed) {
   int still = 0, drawn = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(MASCOT_SOURCE_DIR "/configs")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::SourceFolder() + "/configs")) {
     if (entry.path().extension() != ".toml") continue;
     const std::string toml = ReadFile(entry.path().string());
     const Section document = Section::FromFile(entry.path().string());

@@ -10,6 +10,7 @@
 #include "experiment/model_traits.h"
 #include "orchestrator/report/law_report.h"
 #include "orchestrator/theory/theory.h"
+#include "tests/support/folders.h"
 #include "tests/support/param_name.h"
 
 namespace mascot {
@@ -46,7 +47,7 @@ const std::vector<std::vector<Override>>& Changes() {
 class FigureReasons : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(FigureReasons, StandWherePredictionsDoNot) {
-  const std::string path = std::string(MASCOT_SOURCE_DIR "/configs/") + std::string(GetParam()) + ".toml";
+  const std::string path = test::SourceFolder() + "/configs/" + std::string(GetParam()) + ".toml";
   const std::string text = ReadRegularFile(path);
   int read = 0;
   for (const std::vector<Override>& change : Changes()) {
@@ -88,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(OfLaws, FigureReasons, testing::ValuesIn(LawsWithFigure
 TEST(FigureReasonsOfCheck, AreLinesOfTheirOwn) {
   const Override ideal[] = {{.key = "agents.model", .value = "\"double_integrator\""}};
   const Experiment experiment =
-      LoadExperiment(Section::FromFile(MASCOT_SOURCE_DIR "/configs/flocking.toml", ideal), "test");
+      LoadExperiment(Section::FromFile(test::SourceFolder() + "/configs/flocking.toml", ideal), "test");
   std::string text;
   for (const auto& [label, line] : PredictedFigureLines(experiment, Predict(experiment)))
     text += label + ": " + line + "\n";
@@ -106,8 +107,8 @@ TEST(Theory, SaysSomethingOrWhyItDoesNot) {
                                             {{.key = "agents.model", .value = "unicycle"}}}) {
       Experiment experiment;
       try {
-        experiment = LoadExperiment(
-            Section::FromFile(std::string(MASCOT_SOURCE_DIR "/configs/") + name + ".toml", change), "test");
+        experiment =
+            LoadExperiment(Section::FromFile(test::SourceFolder() + "/configs/" + name + ".toml", change), "test");
       } catch (const ConfigError&) {
         continue;
       }

@@ -7,6 +7,7 @@
 
 #include "agent/laws/laws.h"
 #include "orchestrator/theory/theory.h"
+#include "tests/support/folders.h"
 #include "tests/support/param_name.h"
 
 namespace mascot {
@@ -23,7 +24,7 @@ void PrintTo(const Row& row, std::ostream* out) { *out << row.config << ": " << 
 class Silence : public testing::TestWithParam<Row> {};
 
 std::string SilentOf(const std::string& config, const std::vector<Override>& changes) {
-  const std::string path = std::string(MASCOT_SOURCE_DIR "/configs/") + config + ".toml";
+  const std::string path = test::SourceFolder() + "/configs/" + config + ".toml";
   return Predict(LoadExperiment(Section::FromFile(path, changes), config)).silent;
 }
 

@@ -1,6 +1,7 @@
 // Laws of users that cannot be repeated, and what else a short flight ahead of the run tells of them.
 #include <gmock/gmock.h>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -17,7 +18,7 @@ constexpr const char* kShares =
 class LawTrial : public testing::Test {
  protected:
   Ran Orchestrator(const std::string& words) const {
-    return Shell("cd '" + scratch_.path().string() + "' && '" MASCOT_BINARY_DIR "/orchestrator' " + words);
+    return Shell("cd '" + scratch_.path().string() + "' && '" + BuildFolder() + "/orchestrator' " + words);
   }
   /// Writes an experiment with this law in Python.
   void Write(const std::string& python, const std::string& lines = "") const {
@@ -94,7 +95,7 @@ TEST_F(LawTrial, TellsOfALawThatFailsOrCrashes) {
 TEST_F(LawTrial, EndsAtASignal) {
   Write("def control(t, me, neighbours):\n  if t > 0.1: open('" + scratch_.File("hangs") +
         "', 'w').close()\n  while t > 0.1: pass\n  return 0, 0\n");
-  Running check(MASCOT_BINARY_DIR "/orchestrator", {"check", scratch_.File("law.toml")}, scratch_.File("check"));
+  Running check(BuildFolder() + "/orchestrator", {"check", scratch_.File("law.toml")}, scratch_.File("check"));
   ASSERT_TRUE(Until([&] { return std::filesystem::exists(scratch_.File("hangs")); })) << check.err();
   check.Signal(SIGINT);
   EXPECT_EQ(check.Wait(), 130);

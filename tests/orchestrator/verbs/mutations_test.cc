@@ -15,6 +15,7 @@
 #include "experiment/read_experiment.h"
 #include "orchestrator/live/recorded/recorded_run.h"
 #include "tests/support/call.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -104,7 +105,7 @@ bool IsLarge(const std::string& toml) try {
 
 std::vector<std::string> Configs() {
   std::vector<std::string> configs;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(MASCOT_SOURCE_DIR "/configs"))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::SourceFolder() + "/configs"))
     if (entry.path().extension() == ".toml") configs.push_back(ReadFile(entry.path().string()));
   std::sort(configs.begin(), configs.end());
   return configs;
@@ -118,7 +119,7 @@ std::vector<std::string> Lines(const std::string& text) {
 }
 
 TEST(Mutations, AChangedExperimentIsReadOrRefusedWithAPlace) {
-  const std::string path = MASCOT_BINARY_DIR "/mutant.toml";
+  const std::string path = test::BuildFolder() + "/mutant.toml";
   const std::vector<std::string> configs = Configs();
   Mutator mutator(1);
   std::map<int, int> ends;
@@ -150,7 +151,7 @@ std::vector<std::string> Recordings(const ScratchFolder& scratch) {
   const Said said = Call(SetUpUp, {scratch.File("two.toml"), "--engine", "inprocess", "--out", scratch.File("run"),
                                    "--quiet", "--set", "output.save_plot=false"});
   EXPECT_EQ(said.exit_code, 0) << said.err;
-  const std::string corpus = MASCOT_SOURCE_DIR "/tests/fuzz/corpus/recording/";
+  const std::string corpus = test::SourceFolder() + "/tests/fuzz/corpus/recording/";
   return {ReadFile(scratch.File("run/run.mcap")), ReadFile(corpus + "loose"), ReadFile(corpus + "chunked")};
 }
 
@@ -180,7 +181,7 @@ std::function<int()> SetUpLook(CLI::App& command) {
 
 TEST(Mutations, AChangedRecordingIsReadOrRefusedWithAPlace) {
   const ScratchFolder scratch;
-  const std::string path = MASCOT_BINARY_DIR "/mutant.mcap";
+  const std::string path = test::BuildFolder() + "/mutant.mcap";
   const std::vector<std::string> recordings = Recordings(scratch);
   const std::pair<std::function<int()> (*)(CLI::App&), std::vector<std::string>> verbs[] = {
       {SetUpInfo, {path}},

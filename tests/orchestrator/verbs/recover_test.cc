@@ -6,6 +6,7 @@
 #include "orchestrator/formats/mcap/records.h"
 #include "tests/orchestrator/formats/mcap_files.h"
 #include "tests/support/call.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -44,7 +45,8 @@ Samples SamplesOf(const std::string& path) {
 }
 
 Ran McapCheck(const std::string& path) {
-  return Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/mcapcheck.mjs' '" + path + "' --all --strict --quiet");
+  return Shell("node '" + test::SourceFolder() + "/tests/mcapcheck/mcapcheck.mjs' '" + path +
+               "' --all --strict --quiet");
 }
 
 TEST(Recover, KeepsEveryWholeMessageWhereverTheFileWasCut) {

@@ -11,6 +11,7 @@
 #include "bus/wire.h"
 #include "orchestrator/formats/mcap/reader.h"
 #include "tests/support/edited_recording.h"
+#include "tests/support/folders.h"
 #include "tests/support/intruder.h"
 #include "tests/support/orchestrator.h"
 #include "tests/support/param_name.h"
@@ -24,7 +25,7 @@ using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using Json = nlohmann::json;
 
-const std::string kReplaying = MASCOT_BINARY_DIR "/orchestrator";
+const std::string kReplaying = BuildFolder() + "/orchestrator";
 
 /// Two bodies that do what the law wants, 101 ticks.
 constexpr const char* kPair =
@@ -357,11 +358,11 @@ TEST_F(Replay, ALawThatFailsIsNamedWithTickAndLine) {
 
 TEST_F(Replay, TakesAnotherAgentProgramByACommandOfTheShell) {
   const std::string run = Fly(kRing);
-  const std::string command = "env MASCOT_NOTHING=1 " MASCOT_BINARY_DIR "/agent";
+  const std::string command = "env MASCOT_NOTHING=1 " + BuildFolder() + "/agent";
   EXPECT_EQ(Of(run, "--to 5 --agent '" + command + "'").exit_code, 0);
   EXPECT_EQ(JsonOf(run, "--to 3 --agent '" + command + "'")["processes"], 2);
   // A wrapper that does not become the agent, but waits for it.
-  WriteFile(File("wrapper"), "#!/bin/sh\n" MASCOT_BINARY_DIR "/agent \"$@\"\n");
+  WriteFile(File("wrapper"), "#!/bin/sh\n" + BuildFolder() + "/agent \"$@\"\n");
   EXPECT_EQ(Of(run, "--to 1 --agent 'sh " + File("wrapper") + "'").exit_code, 0);
   const Ran nowhere = Of(run, "--to 1 --agent /nowhere/agent");
   EXPECT_EQ(nowhere.exit_code, 1);
@@ -442,7 +443,7 @@ TEST_F(Replay, AListenerHearsExactlyTheRecordedSamples) {
 }
 
 TEST_F(Replay, AnotherVendorSeesWhatWasRecordedForRos) {
-  const std::string program = MASCOT_BINARY_DIR "/cyclone_rviz";
+  const std::string program = BuildFolder() + "/cyclone_rviz";
   if (!std::filesystem::exists(program)) GTEST_SKIP() << "built without cyclonedds-dev: run scripts/setup --test";
   const std::string run = Fly(kPair, {"--engine", "inprocess", "--set", "record.ros_types=true"});
   Running replay(kReplaying, {"replay", run, "--wait-for", "/tf", "--wait-for", "/scene"}, File("replay"));

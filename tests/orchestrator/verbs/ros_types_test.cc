@@ -11,6 +11,7 @@
 #include "orchestrator/formats/mcap/writer.h"
 #include "orchestrator/recording/recording.h"
 #include "tests/support/call.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -40,7 +41,7 @@ class RosTypes : public testing::Test {
   }
   /// What tests/mcapcheck/ros_types.mjs says of a recording.
   static nlohmann::json Held(const std::string& path) {
-    const Ran ran = Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/ros_types.mjs' '" + path + "'");
+    const Ran ran = Shell("node '" + test::SourceFolder() + "/tests/mcapcheck/ros_types.mjs' '" + path + "'");
     EXPECT_EQ(ran.exit_code, 0) << ran.output;
     return nlohmann::json::parse(ran.output, nullptr, /*allow_exceptions=*/false);
   }
@@ -61,7 +62,8 @@ TEST_F(RosTypes, SayWhatTheStatesSay) {
   EXPECT_EQ(schema("/agent_2/odom"), nlohmann::json({"nav_msgs/msg/Odometry", "ros2msg", "cdr"}));
   EXPECT_THAT(held["qos"]["/scene"].get<std::string>(), HasSubstr("  depth: 1\n  reliability: 1\n  durability: 1\n"));
   EXPECT_THAT(held["qos"]["/tf"].get<std::string>(), HasSubstr("  depth: 10\n  reliability: 1\n  durability: 2\n"));
-  const Ran strict = Shell("node '" MASCOT_SOURCE_DIR "/tests/mcapcheck/mcapcheck.mjs' '" + path + "' --all --strict");
+  const Ran strict =
+      Shell("node '" + test::SourceFolder() + "/tests/mcapcheck/mcapcheck.mjs' '" + path + "' --all --strict");
   EXPECT_EQ(strict.exit_code, 0) << strict.output;
 }
 

@@ -2,6 +2,7 @@
 // library, a host's launch command. Each of them leaves a trace here, a file, when it runs.
 #include <gmock/gmock.h>
 
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -11,14 +12,12 @@ namespace fs = std::filesystem;
 
 using ::testing::HasSubstr;
 
-constexpr std::string_view kPlugin = MASCOT_BINARY_DIR "/tests/plugins/libtracing.so";
-
 /// A run that was recorded, and where its code leaves a trace.
 class RunWithCode : public ::testing::TestWithParam<const char*> {
  protected:
   RunWithCode() {
     const bool in_python = std::string(GetParam()) == "Python";
-    if (!in_python) fs::copy(kPlugin, scratch_.File("libtracing.so"));
+    if (!in_python) fs::copy(BuildFolder() + "/tests/plugins/libtracing.so", scratch_.File("libtracing.so"));
     trace_ = scratch_.File(in_python ? "trace" : "libtracing.so.loaded");
     WriteFile(config_,
               "[run]\nduration_s = 0.5\n[agents]\ncount = 2\nmodel = 'double_integrator'\n[law]\n" +
@@ -33,7 +32,7 @@ class RunWithCode : public ::testing::TestWithParam<const char*> {
   /// Whether the code has run since this was asked last.
   bool LeftATrace() const { return fs::remove(trace_); }
   Ran Orchestrator(const std::string& words) const {
-    return Shell("cd '" + scratch_.path().string() + "' && '" MASCOT_BINARY_DIR "/orchestrator' " + words);
+    return Shell("cd '" + scratch_.path().string() + "' && '" + BuildFolder() + "/orchestrator' " + words);
   }
 
   ScratchFolder scratch_;
@@ -65,7 +64,7 @@ TEST_P(RunWithCode, VerbsThatLookDoNotRunIt) {
 }
 
 TEST_P(RunWithCode, TheViewOfARecordingDoesNotRunIt) {
-  Running view(MASCOT_BINARY_DIR "/orchestrator", {"view", scratch_.File("run"), "--at", "127.0.0.1:0"},
+  Running view(BuildFolder() + "/orchestrator", {"view", scratch_.File("run"), "--at", "127.0.0.1:0"},
                scratch_.File("view"));
   ASSERT_TRUE(Await("the view", [&] { return view.Said("http://") || view.IsOver(); })) << view.err();
   view.Signal(SIGINT);
@@ -85,7 +84,7 @@ TEST(UserCode, VerifyStartsNoLaunchCommandUnlessTold) {
   WriteFile(config, ReadFile(config) +
                         "\n[[hosts]]\nname = 'lab'\nagents = '2'\naddress = '127.0.0.1'\nlaunch = ['touch', '" + trace +
                         "']\n");
-  const std::string verify = "'" MASCOT_BINARY_DIR "/orchestrator' verify --engine dds '" + up.path().string() + "'";
+  const std::string verify = "'" + BuildFolder() + "/orchestrator' verify --engine dds '" + up.path().string() + "'";
   const Ran without = Shell(verify);
   EXPECT_EQ(without.exit_code, 0) << without.output;
   EXPECT_FALSE(fs::exists(trace));

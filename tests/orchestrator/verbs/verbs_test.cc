@@ -16,6 +16,7 @@
 #include "experiment/read_experiment.h"
 #include "orchestrator/verbs/verb.h"
 #include "physics_server/model.h"
+#include "tests/support/folders.h"
 #include "tests/support/scratch.h"
 
 namespace mascot {
@@ -118,7 +119,7 @@ TEST_F(Verbs, CheckTakesTheOptionsOfARun) {
   EXPECT_THAT(Printed(SetUpCheck, {path(), "--duration-s", "10", "--set", "run.duration_s=20"}),
               HasSubstr("  duration       10 s, 1000 ticks at 100 Hz\n"));
   const auto predicted = [](const std::string& seed) {
-    const std::string config = std::string(MASCOT_SOURCE_DIR) + "/configs/leaderless.toml";
+    const std::string config = test::SourceFolder() + "/configs/leaderless.toml";
     return Json::parse(Printed(SetUpCheck, {config, "--json", "--seed", seed}))["predicted"]["value_m"];
   };
   EXPECT_EQ(predicted("3"), predicted("3"));

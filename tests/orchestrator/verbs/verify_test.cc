@@ -15,6 +15,7 @@
 #include "orchestrator/recording/sample_fields.h"
 #include "tests/support/call.h"
 #include "tests/support/edited_recording.h"
+#include "tests/support/folders.h"
 #include "tests/support/recorded_with_actions.h"
 #include "tests/support/scratch.h"
 
@@ -290,7 +291,7 @@ TEST_F(Verify, ALawWhoseFileChangedIsFlownAsItWas) {
 
 TEST_F(Verify, ALibraryThatChangedIsNamed) {
   const std::string mine = File("libmine.so");
-  std::filesystem::copy_file(MASCOT_BINARY_DIR "/tests/plugins/libmirror.so", mine);
+  std::filesystem::copy_file(test::BuildFolder() + "/tests/plugins/libmirror.so", mine);
   Fly("[run]\nduration_s = 0.5\n[agents]\ncount = 2\nmodel = 'double_integrator'\n[law]\nname = 'plugin'\nlibrary = '" +
       mine + "'\n");
   ASSERT_EQ(flown_.exit_code, 0) << flown_.err;

@@ -19,6 +19,7 @@
 #include "orchestrator/recording/run_folder.h"
 #include "orchestrator/recording/run_writer.h"
 #include "tests/orchestrator/live/shown/viewer.h"
+#include "tests/support/folders.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -81,7 +82,7 @@ class Watched {
         prediction_(Predict(experiment)),
         meter_(experiment),
         view(experiment, prediction_, meter_, control,
-             {.port = 0, .page = MASCOT_SOURCE_DIR "/orchestrator/live/page", .source = {.engine = "inprocess"}},
+             {.port = 0, .page = SourceFolder() + "/orchestrator/live/page", .source = {.engine = "inprocess"}},
              [this](const std::string& line) {
                const std::lock_guard lock(mutex_);
                log_ += line + "\n";
@@ -756,12 +757,12 @@ TEST(LiveView, EndsWhileSomebodyAsks) {
 class WsCheck : public Running {
  public:
   WsCheck(const ScratchFolder& folder, const std::string& url)
-      : Running("node", {MASCOT_SOURCE_DIR "/tests/wscheck/wscheck.mjs", "ws" + url.substr(4)},
-                folder.File("wscheck")) {}
+      : Running("node", {SourceFolder() + "/tests/wscheck/wscheck.mjs", "ws" + url.substr(4)}, folder.File("wscheck")) {
+  }
 };
 
 TEST(LiveView, IsReadByFoxglovesOwnPackages) {
-  ASSERT_TRUE(std::filesystem::exists(MASCOT_SOURCE_DIR "/tests/wscheck/node_modules"))
+  ASSERT_TRUE(std::filesystem::exists(SourceFolder() + "/tests/wscheck/node_modules"))
       << "tests/wscheck/node_modules is missing: run scripts/test, which installs it with `npm ci`";
   const ScratchFolder folder;
   Watched run(Load(kThree, "run.duration_s", "100000.0"));  // as long as the checker takes
