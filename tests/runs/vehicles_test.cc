@@ -273,6 +273,16 @@ TEST_F(Vehicles, MotorsStopWhenSomebodyMeansIt) {
   EXPECT_EQ(up.Wait(), 130) << up.err();
 }
 
+TEST_F(Vehicles, ThatAreLostBeforeTheRunHasBegunEndIt) {
+  airfield_.AddPx4(1, "0,0,0", {"--pilot-at-s", "12"});
+  airfield_.AddPx4(2, "4,0,0", {"--refuses-arming"});
+  airfield_.AddPx4(3, "0,4,0");
+  Up up = Fly(Team("[1, 2, 3]", kPx4 + "on_loss = 'hold'\n", kEndless));
+  EXPECT_EQ(up.Wait(), 1);
+  EXPECT_THAT(up.err(), AllOf(HasSubstr("vehicle 1: lost: it follows no set-points any more"),
+                              HasSubstr("the run cannot begin: vehicle 1 is lost"), HasSubstr("vehicle 3: landed")));
+}
+
 TEST_F(Vehicles, AreNotAwaitedByARunThatIsStopped) {
   airfield_.AddPx4(1, "0,0,0");
   Up up = Fly(Team("[1]", kPx4, kEndless), {});

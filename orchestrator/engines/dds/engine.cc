@@ -527,6 +527,8 @@ void DdsRun::LookAtFleet() {
     console_.Line(fmt::format("vehicle {}: {}", news.agent, news.words));
     feed_.OnVehicle(news);
   }
+  if (phases_.phase() == RunPhases::Phase::kStarting)
+    if (const std::string why = fleet_.WhyNotToBegin(); !why.empty()) phases_.Fail("the run cannot begin: " + why);
   if (phases_.phase() == RunPhases::Phase::kStarting && phases_.found_everybody() && fleet_.AreFound() &&
       !std::exchange(vehicles_are_there_, true)) {
     if (run_requests_ != nullptr && run_requests_->vehicles_go())

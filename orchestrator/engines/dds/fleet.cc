@@ -15,6 +15,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kRepeatEvery = 200ms;
 
+bool IsReady(FlightPhase phase) { return phase == FlightPhase::kReady || phase == FlightPhase::kFlying; }
+
 bool IsUp(FlightPhase phase) { return phase >= FlightPhase::kStreaming && phase <= FlightPhase::kLanding; }
 
 std::string VehiclesText(const std::vector<std::uint32_t>& agents) {
@@ -132,10 +134,7 @@ bool Fleet::AreFound() const {
 }
 
 bool Fleet::AreReady() const {
-  return std::ranges::all_of(vehicles_, [](const auto& entry) {
-    const FlightPhase phase = entry.second.state.phase;
-    return phase == FlightPhase::kReady || phase == FlightPhase::kFlying;
-  });
+  return std::ranges::all_of(vehicles_, [](const auto& entry) { return IsReady(entry.second.state.phase); });
 }
 
 bool Fleet::AreDown() const { return Flying().empty(); }
@@ -147,12 +146,25 @@ std::string Fleet::Phases() const {
   return text;
 }
 
-std::string Fleet::Awaited() const {
-  std::string text;
+/// The vehicles in these phases, for people: "vehicles 1, 2 are found, vehicle 3 is armed".
+std::string Fleet::InPhases(bool (*these)(FlightPhase)) const {
+  std::map<FlightPhase, std::vector<std::uint32_t>> agents;
   for (const auto& [id, vehicle] : vehicles_)
-    if (vehicle.state.phase != FlightPhase::kReady)
-      text += fmt::format("{}vehicle {} is {}", text.empty() ? "" : ", ", id, kFlightPhases.Name(vehicle.state.phase));
+    if (these(vehicle.state.phase)) agents[vehicle.state.phase].push_back(static_cast<std::uint32_t>(id));
+  std::string text;
+  for (const auto& [phase, ids] : agents)
+    text += fmt::format("{}{} {} {}", text.empty() ? "" : ", ", VehiclesText(ids), ids.size() == 1 ? "is" : "are",
+                        kFlightPhases.Name(phase));
   return text;
+}
+
+std::string Fleet::Awaited() const {
+  const std::string text = InPhases([](FlightPhase phase) { return !IsReady(phase); });
+  return text.empty() ? "all vehicles are ready, and the first tick is to come" : text;
+}
+
+std::string Fleet::WhyNotToBegin() const {
+  return InPhases([](FlightPhase phase) { return phase == FlightPhase::kLanded || phase == FlightPhase::kLost; });
 }
 
 }  // namespace mascot

@@ -57,8 +57,10 @@ class Fleet {
   bool AreReady() const;
   /// None is in the air, or on its way up: nothing is sent to any.
   bool AreDown() const;
-  /// What the start waits for, for people: "vehicles 1 and 2: send start"; empty: nothing.
+  /// What a run that has not begun waits for, for people: "vehicles 1, 2 are found, vehicle 3 is armed".
   std::string Awaited() const;
+  /// Why the run cannot begin any more, for people: "vehicle 3 is lost". Empty: it can. No vehicle starts twice.
+  std::string WhyNotToBegin() const;
   /// Where all are in their flights: "1 flying, 3 landing".
   std::string Phases() const;
   VehicleState Of(int agent) const { return vehicles_.at(agent).state; }
@@ -71,6 +73,7 @@ class Fleet {
     bool has_process = true, has_flown = false;
   };
   void OnLoss(int agent);
+  std::string InPhases(bool (*these)(FlightPhase)) const;
   std::vector<std::uint32_t> Flying() const;
 
   std::map<int, Vehicle> vehicles_;

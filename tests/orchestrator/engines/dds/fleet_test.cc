@@ -71,6 +71,24 @@ TEST_F(FleetTest, StartsOnlyIfAllAreThereAndAsksOnce) {
               ThrowsMessage<std::invalid_argument>("start: expected vehicles that stand on the ground, got none"));
 }
 
+TEST_F(FleetTest, SaysWhatARunWaitsForAndWhenThatIsInVain) {
+  EXPECT_EQ(fleet_.Awaited(), "vehicles 1, 2, 3 are absent");
+  AllAre(FlightPhase::kFound);
+  Says(2, FlightPhase::kArmed, "armed");
+  EXPECT_EQ(fleet_.Awaited(), "vehicles 1, 3 are found, vehicle 2 is armed");
+  Says(1, FlightPhase::kReady, "ready");
+  Says(2, FlightPhase::kFlying, "flying");
+  EXPECT_EQ(fleet_.Awaited(), "vehicle 3 is found");
+  Says(3, FlightPhase::kReady, "ready");
+  EXPECT_EQ(fleet_.Awaited(), "all vehicles are ready, and the first tick is to come");
+  EXPECT_EQ(fleet_.WhyNotToBegin(), "");
+  Says(1, FlightPhase::kLanding, "landing: its battery is at 12 %");
+  EXPECT_EQ(fleet_.WhyNotToBegin(), "") << "all shall be told that it has landed";
+  Says(1, FlightPhase::kLanded, "landed");
+  Says(3, FlightPhase::kLost, "lost: it has disarmed itself");
+  EXPECT_EQ(fleet_.WhyNotToBegin(), "vehicle 1 is landed, vehicle 3 is lost");
+}
+
 TEST_F(FleetTest, AsksToLandUntilTheyDo) {
   EXPECT_THAT([&] { fleet_.Land(0, "enough"); },
               ThrowsMessage<std::invalid_argument>("land: expected a vehicle in the air, got none"));
