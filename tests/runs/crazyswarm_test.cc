@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/support/folders.h"
+#include "tests/support/intruder.h"
 #include "tests/support/orchestrator.h"
 
 namespace mascot::test {
@@ -22,9 +23,7 @@ TEST(Crazyswarm, AScriptTakesOffFliesStreamsAndLands) {
   const ScratchFolder folder;
   WriteFile(folder.File("team.toml"), kTeam);
   Up up(folder, "run", folder.File("team.toml"), {});
-  ASSERT_TRUE(Until([&] { return up.Said("DDS domain "); })) << up.err();
-  const std::string said = up.err().substr(up.err().find("DDS domain ") + 11);
-  Running script(BuildFolder() + "/fake_script", {"--domain", std::to_string(std::stoi(said)), "--nonsense"},
+  Running script(BuildFolder() + "/fake_script", {"--domain", std::to_string(DomainOf(up)), "--nonsense"},
                  folder.File("script"));
   EXPECT_EQ(script.Wait(), 0) << script.out() << script.err();
   for (const char* words :

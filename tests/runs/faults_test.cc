@@ -280,8 +280,7 @@ TEST(Faults, WhatALawHasForkedDoesNotOutliveAKilledOrchestrator) {
       "  if child == 0: time.sleep(1000)\n  print('started', helper.pid, child, flush=True)\n"
       "def control(t, me, neighbours):\n  if t > 0.1: time.sleep(1)\n  return [0, 0]\n";
   Up up(folder, "run", Python(folder, 1, law, "fidelity = false\n"));
-  ASSERT_TRUE(Until([&] { return up.Said("[agent_1] started "); })) << up.err();
-  std::istringstream words(up.err().substr(up.err().find("started ") + 8));
+  std::istringstream words(RestOfLine(up, "[agent_1] started "));
   pid_t helper = 0, child = 0;
   words >> helper >> child;
   up.Signal(SIGKILL);

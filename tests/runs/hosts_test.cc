@@ -285,9 +285,7 @@ for k in range(6):
   };
   const auto told = [&](const std::string& engine, const std::function<void(const Running&)>& meanwhile) {
     Running server("ip", serve(engine), folder_.File(engine));
-    const std::string at = "stepped at 127.0.0.1:";
-    EXPECT_TRUE(Until([&] { return server.Said("(Ctrl-C ends)"); })) << server.err();
-    const std::string said = server.err(), port = std::to_string(std::stoi(said.substr(said.find(at) + at.size())));
+    const std::string port = std::to_string(std::stoi(RestOfLine(server, "stepped at 127.0.0.1:")));
     Running asks("ip", hosts_.Here({"/usr/bin/python3", client, port}), folder_.File("asks"));
     meanwhile(server);
     EXPECT_EQ(asks.Wait(), 0) << asks.err() << server.err();

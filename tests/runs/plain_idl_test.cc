@@ -41,10 +41,6 @@ class PlainIdl : public testing::TestWithParam<PlainReader> {
                   delivery + "'\n[law]\nname = 'consensus'\n");
     return Up(folder_, "run", folder_.File("run.toml"), {"--set", "run.pace=1"});
   }
-  static bool HasDomain(const Up& up) {
-    return Until(
-        [&] { return up.Said("domain ") && up.err().find('\n', up.err().find("domain ")) != std::string::npos; });
-  }
   std::vector<std::string> Words(const Up& up, const std::vector<std::string>& topics) const {
     std::vector<std::string> words = GetParam().profiles;
     words.push_back(std::to_string(DomainOf(up)));
@@ -114,7 +110,6 @@ constexpr std::size_t kEnough = 50;  // samples
 
 TEST_P(PlainIdl, ReadsTopicsOfAgentsAsRecorded) {
   Up up = Fly("topics");
-  ASSERT_TRUE(HasDomain(up));
   const std::vector<std::string> topics{"rt/agent_2/state", "rt/agent_3/command", "rt/clock", "rt/experiment"};
   const Running reader(GetParam().program, Words(up, topics), folder_.File("reader"));
   ASSERT_TRUE(Until([&] {
@@ -152,7 +147,6 @@ TEST_P(PlainIdl, ReadsTopicsOfAgentsAsRecorded) {
 
 TEST_P(PlainIdl, ReadsWholeTicksAsRecorded) {
   Up up = Fly("bundled");
-  ASSERT_TRUE(HasDomain(up));
   const Running reader(GetParam().program, Words(up, {"rt/row"}), folder_.File("reader"));
   ASSERT_TRUE(Until([&] { return HeardOn(reader, "rt/row").size() >= kEnough; })) << reader.err() << up.err();
   up.Signal(SIGINT);

@@ -27,17 +27,7 @@ name = "consensus"
 )";
 
 /// The address at which a run can be watched, as `up` prints it.
-std::string UrlOf(const Running& up) {
-  std::string url;
-  EXPECT_TRUE(Until([&] {
-    const std::string err = up.err();
-    const auto at = err.find("http://");
-    const auto end = at == std::string::npos ? at : err.find('\n', at);
-    if (end != std::string::npos) url = err.substr(at, end - at);
-    return !url.empty() || up.IsOver();
-  }));
-  return url;
-}
+std::string UrlOf(const Running& up) { return "http://" + RestOfLine(up, "http://"); }
 
 Ran WsCheck(const std::string& url) {
   return Shell("node '" + SourceFolder() + "/tests/wscheck/wscheck.mjs' ws" + url.substr(4));
@@ -92,10 +82,9 @@ TEST(UpWithView, BecomesTheRecordingAtTheSameAddressIfItShallStay) {
          "run.mode='lockstep'", "--set", "output.save_plot=true"});
   const std::string url = UrlOf(up);
   ASSERT_THAT(url, StartsWith("http://127.0.0.1:")) << up.err();
-  const std::string steer = up.err().substr(up.err().find("steer"));
-  ASSERT_TRUE(Until([&] { return up.Said("the recording is shown until Ctrl-C") || up.IsOver(); }));
-  const std::string again = up.err().substr(up.err().find("the recording is shown"));
-  ASSERT_TRUE(Until([&] { return up.Said("the recording is shown until Ctrl-C\nview           " + url); })) << again;
+  const std::string token = RestOfLine(up, "#steer=");
+  const std::string shown_again = "the recording is shown until Ctrl-C\nview           " + url;
+  ASSERT_TRUE(Until([&] { return up.Said(shown_again) || up.IsOver(); }) && up.Said(shown_again)) << up.err();
   ASSERT_TRUE(Until([&] { return WebClient(url).Get("/results/summary.json").starts_with("HTTP/1.1 200"); }));
   EXPECT_THAT(WebClient(url).Get("/results/paths.png"), StartsWith("HTTP/1.1 200"));
   Viewer viewer(url);
@@ -105,8 +94,8 @@ TEST(UpWithView, BecomesTheRecordingAtTheSameAddressIfItShallStay) {
   EXPECT_EQ(shown["recorded"]["has_summary"], true);
   EXPECT_THAT(shown["recorded"]["pictures"], testing::Contains("paths.png"));
   EXPECT_EQ(up.Summary()["exit"], 0);
-  const std::string token = steer.substr(steer.find("#steer="), std::string("#steer=").size() + 32);
-  EXPECT_TRUE(Until([&] { return up.err().find(token) != up.err().rfind(token); })) << "the token stays " << up.err();
+  EXPECT_EQ(token.size(), 32u);
+  EXPECT_TRUE(Until([&] { return CountOf("#steer=" + token, up.err()) == 2; })) << "the token stays " << up.err();
   up.Signal(SIGINT);
   EXPECT_EQ(up.Wait(), 0) << "the exit code is that of the run";
 }
@@ -257,9 +246,8 @@ TEST(UpWithView, LetsOthersWatchOnlyAndSaysWhereToSteer) {
   WriteFile(folder.File("run.toml"), kRecordedRun);
   Up up(folder, "run", folder.File("run.toml"),
         {"--engine", "inprocess", "--set", "run.mode='lockstep'", "--view", "127.0.0.1:0", "--watch-only"});
-  ASSERT_TRUE(Says(up, "steer          http://127.0.0.1:"));
-  const std::string said = up.err(), url = UrlOf(up), steer = said.substr(said.find("/#steer=") + 8, 32);
-  EXPECT_THAT(said, HasSubstr("view           " + url + "\n"));
+  const std::string url = UrlOf(up), steer = RestOfLine(up, "steer          " + url + "/#steer=");
+  EXPECT_THAT(up.err(), HasSubstr("view           " + url + "\n"));
   {
     Viewer watches(url), steers(url, "/?steer=" + steer);
     EXPECT_EQ(watches.Ask({{"ask", "stop"}})["words"], "this view only watches");

@@ -9,11 +9,8 @@
 
 namespace mascot::test {
 
-/// The DDS domain of a run, as `up` has printed it.
-inline int DomainOf(const Running& up) {
-  const std::string text = up.err();
-  return std::stoi(text.substr(text.find("domain ") + 7));
-}
+/// The DDS domain of a run, as `up` prints it.
+inline int DomainOf(const Running& up) { return std::stoi(RestOfLine(up, "domain ")); }
 
 /// How a participant of this name joins the domain of `up`.
 inline DomainOptions Intruder(const Running& up, const std::string& name) {

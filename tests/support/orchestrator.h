@@ -86,6 +86,24 @@ class Running {
   pid_t pid_ = -1;
 };
 
+/// Waits until a program has printed a whole line with `words` to stderr. Returns what follows them in it; nothing if
+/// there is no such line, and the test fails.
+inline std::string RestOfLine(const Running& program, const std::string& words) {
+  std::string err, rest;
+  const auto has_line = [&] {
+    const std::size_t at = err.find(words), end = at == std::string::npos ? at : err.find('\n', at);
+    if (end != std::string::npos) rest = err.substr(at + words.size(), end - at - words.size());
+    return end != std::string::npos;
+  };
+  Until([&] {
+    const bool was_over = program.IsOver();
+    err = program.err();
+    return has_line() || was_over;
+  });
+  EXPECT_TRUE(has_line()) << "no line with '" << words << "' in: " << err;
+  return rest;
+}
+
 /// Starts `orchestrator up` for one configuration, with results in folder/name, without plots.
 class Up : public Running {
  public:
