@@ -29,6 +29,11 @@ name = "consensus"
 /// The address at which a run can be watched, as `up` prints it.
 std::string UrlOf(const Running& up) { return "http://" + RestOfLine(up, "http://"); }
 
+/// Waits until a program has said this in words on stderr.
+bool Says(const Running& program, const std::string& words) {
+  return Until([&] { return program.Said(words) || program.IsOver(); }) && program.Said(words);
+}
+
 Ran WsCheck(const std::string& url) {
   return Shell("node '" + SourceFolder() + "/tests/wscheck/wscheck.mjs' ws" + url.substr(4));
 }
@@ -83,8 +88,7 @@ TEST(UpWithView, BecomesTheRecordingAtTheSameAddressIfItShallStay) {
   const std::string url = UrlOf(up);
   ASSERT_THAT(url, StartsWith("http://127.0.0.1:")) << up.err();
   const std::string token = RestOfLine(up, "#steer=");
-  const std::string shown_again = "the recording is shown until Ctrl-C\nview           " + url;
-  ASSERT_TRUE(Until([&] { return up.Said(shown_again) || up.IsOver(); }) && up.Said(shown_again)) << up.err();
+  ASSERT_TRUE(Says(up, "the recording is shown until Ctrl-C\nview           " + url)) << up.err();
   ASSERT_TRUE(Until([&] { return WebClient(url).Get("/results/summary.json").starts_with("HTTP/1.1 200"); }));
   EXPECT_THAT(WebClient(url).Get("/results/paths.png"), StartsWith("HTTP/1.1 200"));
   Viewer viewer(url);
@@ -152,11 +156,6 @@ TEST(UpWithView, TakesTheNextPortIfAnotherRunHasTheFirst) {
   EXPECT_TRUE(viewer.NextWith("\"op\":\"serverInfo\""));
   for (Up* up : {&first, &second}) up->Signal(SIGINT);
   for (Up* up : {&first, &second}) EXPECT_EQ(up->Wait(), 130);
-}
-
-/// Waits until a program has said this in words on stderr.
-bool Says(const Running& program, const std::string& words) {
-  return Until([&] { return program.Said(words) || program.IsOver(); }) && program.Said(words);
 }
 
 TEST(UpWithView, OutlivesAMessageOfManyLevels) {

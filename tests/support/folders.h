@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include "tests/support/folders.h"
-
 namespace mascot::test {
 
 // Functions, not macros: the command lines of tests contain no path, and ccache finds what another clone has compiled.

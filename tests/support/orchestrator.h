@@ -89,19 +89,18 @@ class Running {
 /// Waits until a program has printed a whole line with `words` to stderr. Returns what follows them in it; nothing if
 /// there is no such line, and the test fails.
 inline std::string RestOfLine(const Running& program, const std::string& words) {
-  std::string err, rest;
-  const auto has_line = [&] {
-    const std::size_t at = err.find(words), end = at == std::string::npos ? at : err.find('\n', at);
-    if (end != std::string::npos) rest = err.substr(at + words.size(), end - at - words.size());
-    return end != std::string::npos;
-  };
+  std::string err;
+  std::size_t at = 0, end = 0;
   Until([&] {
     const bool was_over = program.IsOver();
     err = program.err();
-    return has_line() || was_over;
+    at = err.find(words);
+    end = err.find('\n', at);
+    return end != std::string::npos || was_over;
   });
-  EXPECT_TRUE(has_line()) << "no line with '" << words << "' in: " << err;
-  return rest;
+  if (end != std::string::npos) return err.substr(at + words.size(), end - at - words.size());
+  ADD_FAILURE() << "no line with '" << words << "' in: " << err;
+  return "";
 }
 
 /// Starts `orchestrator up` for one configuration, with results in folder/name, without plots.
